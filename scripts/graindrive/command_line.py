@@ -1,0 +1,171 @@
+"""From `key=value` arguments and YADE's batch tables to checked parameters, or to one line that says what is wrong."""
+
+import difflib
+import math
+import os
+import sys
+
+from pydantic import ValidationError
+
+from .batch_table import evaluated, read_row
+from .errors import UsageError, one_line
+from .parameters import allowed, choices, digest, plain_type
+
+HELP_WORDS = ("help", "--help", "-h", "-help")
+SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false": False, "no": False, "off": False}
+
+
+def parameters_or_exit(cls, arguments, presets, *, study, defaults=None, environment=None):
+    """Do what `StudyParameters.from_command_line` promises."""
+    if any(argument in HELP_WORDS for argument in arguments):
+        print(help_table(cls, presets, study=study, defaults=defaults))
+        sys.exit(0)
+    try:
+        return parse(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
+    except UsageError as error:
+        print(f"{study}: error: {error}", file=sys.stderr)
+        sys.exit(UsageError.exit_code)
+
+
+def parse(cls, arguments, presets, *, study, defaults=None, environment=None):
+    """Return an instance of the parameter class `cls`; raises UsageError at the first argument that is wrong."""
+    given = from_batch_row(cls, os.environ if environment is None else environment)
+    for argument in arguments:
+        key, text = split(cls, argument)
+        if key in given:
+            raise UsageError(
+                f"{key} is given twice: {key}={one_line(given[key])} and {argument_text(key, text)}; keep one"
+            )
+        given[key] = text
+    values = {key: convert(cls.__fields__[key], text) for key, text in given.items()}
+    base = dict(defaults or {})
+    scale = values.get("scale", base.get("scale", cls.__fields__["scale"].default))
+    if scale not in presets:
+        raise UsageError(f"{argument_text('scale', scale)} is not known to {study}; allowed: {', '.join(presets)}")
+    merged = {**base, **presets[scale], **values, "scale": scale}
+    if not merged.get("out"):
+        merged["out"] = folder_name(study, scale, {k: v for k, v in given.items() if k not in ("scale", "out")}, cls)
+    return build(cls, merged, given)
+
+
+def from_batch_row(cls, environment):
+    """Return {key: text} of the row of the batch table that `environment` names."""
+    given = {}
+    for heading, text in read_row(environment).items():
+        key, _ = split(cls, f"{heading}=")
+        given[key] = evaluated(text) if plain_type(cls.__fields__[key]) in (int, float) else text
+    return given
+
+
+def split(cls, argument):
+    """Return (key, text) of one `key=value`; raises UsageError with the nearest right spelling."""
+    key, sign, text = argument.partition("=")
+    key = key.strip()
+    bare = key.lstrip("-").replace("-", "_")
+    if not sign:
+        owner = next((k for k, f in cls.__fields__.items() if bare in choices(f)), None)
+        hint = f"{owner}={bare}" if owner else nearest(bare, cls.__fields__, "", "=…")
+        way_out = f"did you mean {hint}?" if hint else "help lists the keys"
+        raise UsageError(f"'{one_line(argument)}' is not of the form key=value; {way_out}")
+    if key not in cls.__fields__:
+        hint = nearest(bare, cls.__fields__, "did you mean ", "? ")
+        raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
+    return key, text.strip()
+
+
+def nearest(word, words, before, after):
+    """Return the one of `words` closest to `word`, between `before` and `after`, or nothing if none is close."""
+    found = difflib.get_close_matches(str(word).lower(), list(map(str, words)), n=1, cutoff=0.5)
+    return f"{before}{found[0]}{after}" if found else ""
+
+
+def argument_text(key, value):
+    """Return the argument as the user typed it, on one line."""
+    return f"{key}={one_line(value)}"
+
+
+def refuse(field, text):
+    """Raise the UsageError for a value that `field` does not take."""
+    hint = nearest(text, choices(field), " (did you mean ", "?)")
+    raise UsageError(
+        f"{argument_text(field.name, text)} is not allowed: {field.name} is {allowed(field)}{hint}"
+        f" - {field.field_info.description}"
+    )
+
+
+def convert(field, text):
+    """Return the text of one value as the type that `field` declares; raises UsageError."""
+    if field.allow_none and text.lower() == "auto":
+        return None
+    kind = plain_type(field)
+    try:
+        if kind is bool:
+            return SWITCH[text.lower()]
+        if kind is int:
+            return whole(text)
+        if kind is float:
+            return finite(float(text))
+    except (ValueError, KeyError, OverflowError):
+        refuse(field, text)
+    if kind is str and any(not c.isprintable() for c in text):
+        refuse(field, text)
+    return text
+
+
+def finite(number):
+    """Return `number`; raises ValueError if it is infinite or not a number."""
+    if not math.isfinite(number):
+        raise ValueError("not finite")
+    return number
+
+
+def whole(text):
+    """Return the integer that `text` writes, also as 1e5."""
+    try:
+        return int(text)
+    except ValueError:
+        number = float(text)
+        if not number.is_integer():
+            raise ValueError("not whole") from None
+        return int(number)
+
+
+def build(cls, merged, given):
+    """Return `cls(**merged)`; raises UsageError for the first value out of range, or for a condition between values."""
+    try:
+        return cls(**merged)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = first["loc"][0]
+        if key in cls.__fields__ and first["type"] != "value_error":
+            refuse(cls.__fields__[key], given.get(key, merged.get(key)))
+        prefix = f"{argument_text(key, given.get(key, merged.get(key)))}: " if key in cls.__fields__ else ""
+        raise UsageError(prefix + one_line(first["msg"], 400)) from None
+
+
+def folder_name(study, scale, given, cls):
+    """Return the default run folder: the study, its scale and the keys given."""
+    kept = {k: v for k, v in given.items() if cls.__fields__[k].field_info.extra.get("identity", True)}
+    name = "-".join([study, scale] + [f"{key}_{value}" for key, value in sorted(kept.items())])
+    name = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in name)
+    return name if len(name) <= 120 else f"{name[:107]}-{digest(kept)}"
+
+
+def help_table(cls, presets, *, study, defaults=None):
+    """Return the table of keys: key, unit, default (and what a scale changes), meaning and what is allowed."""
+    rows = [("key", "unit", "default", "meaning")]
+    for key, field in cls.__fields__.items():
+        default = (defaults or {}).get(key, field.default)
+        changed = [f"{scale}: {shown(values[key])}" for scale, values in presets.items() if key in values]
+        default = ", ".join(changed) if len(changed) == len(presets) else ", ".join([shown(default)] + changed)
+        rows.append((key, cls.unit(key), default, f"{field.field_info.description} ({allowed(field)})"))
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    lines = ["  ".join([cell.ljust(width) for cell, width in zip(row, widths)] + [row[3]]) for row in rows]
+    return "\n".join([f"usage: yade {study}.py [key=value …]", ""] + lines)
+
+
+def shown(value):
+    """Return a default as the user would type it."""
+    if value is None:
+        return "auto"
+    return str(int(value)) if isinstance(value, bool) else str(value)

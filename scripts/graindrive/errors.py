@@ -1,0 +1,25 @@
+"""The two ways in which a run ends early on purpose: a request that cannot be met, and a signal."""
+
+
+class UsageError(Exception):
+    """What was asked for cannot be done; the message is one line: what was given, what is allowed, the way out."""
+
+    exit_code = 2
+
+
+class Interrupted(BaseException):
+    """A signal asked the run to stop; not an `Exception`, so that no study swallows it by accident.
+
+    `signal_number` is the signal's number [-]; the exit code is 128 + that, as in a shell.
+    """
+
+    def __init__(self, signal_number):
+        super().__init__(f"stopped by signal {signal_number}")
+        self.signal_number = int(signal_number)
+        self.exit_code = 128 + self.signal_number
+
+
+def one_line(value, limit=60):
+    """Return `value` as text on one line of at most `limit` characters, for use in messages."""
+    text = " ".join("".join(c if c.isprintable() else " " for c in str(value)).split())
+    return text if len(text) <= limit else text[: limit - 1] + "…"

@@ -1,0 +1,114 @@
+"""Parameters of a study: each with unit, default, meaning and range, checked before anything is computed or written."""
+
+import hashlib
+import json
+import math
+from typing import Literal
+
+from pydantic import BaseModel, Field, validator
+
+LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+
+
+def quantity(default, unit, meaning, *, identity=True, **limits):
+    """Declare one parameter of a study.
+
+    `unit` is text ("d", "sqrt(d/g)", "-" for a pure number), `meaning` one line for the help table, `limits` any of
+    gt, ge, lt, le. `identity=False` marks what changes how a run is made but not its result: such keys
+    take no part in comparing runs.
+    """
+    if set(limits) - set(LIMITS):
+        raise TypeError(f"limits are {', '.join(LIMITS)}, got {', '.join(limits)}")
+    return Field(default, description=meaning, unit=unit, identity=identity, **limits)
+
+
+class StudyParameters(BaseModel):
+    """What every study knows; a study derives its own class from this and adds its fields with `quantity`.
+
+    A parameter is a finite number, a word or a switch; conditions between parameters are pydantic root validators
+    whose ValueError is one plain sentence.
+    """
+
+    scale: Literal["smoke", "demo", "paper"] = quantity(
+        "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
+    )
+    seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
+    loop: Literal["yade", "grain"] = quantity("yade", "-", "time loop: YADE's own or GrainLoop")
+    precision: Literal["double", "single"] = quantity("double", "-", "number type of contact forces in GrainLoop")
+    dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0)
+    out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
+    resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
+    redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
+    vtk: bool = quantity(False, "-", "also write files for ParaView", identity=False)
+
+    class Config:
+        extra = "forbid"
+        validate_all = True
+        allow_mutation = False
+
+    @validator("*", pre=True)
+    def _finite_and_whole(cls, value, field):
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError("not finite")
+        if plain_type(field) is int and isinstance(value, float) and not value.is_integer():
+            raise ValueError("not whole")
+        return value
+
+    @classmethod
+    def unit(cls, key):
+        """Return the unit of parameter `key` as text."""
+        return cls.__fields__[key].field_info.extra.get("unit", "-")
+
+    def identity(self):
+        """Return the dict of all parameters that decide the result: two runs are the same when theirs are equal."""
+        return {
+            key: value
+            for key, value in self.dict().items()
+            if self.__fields__[key].field_info.extra.get("identity", True)
+        }
+
+    def digest(self):
+        """Return 12 hexadecimal characters that stand for `identity()`."""
+        return digest(self.identity())
+
+    @classmethod
+    def from_command_line(cls, arguments, presets, *, study, defaults=None, environment=None):
+        """Return the parameters for `key=value` arguments (without the script's name), or end the program.
+
+        `presets` maps each scale to the values that it changes, `defaults` holds a preset study's own; what the user
+        gives on the command line or in a row of YADE's batch table wins over both. `help` prints the table of keys and
+        exits 0; a bad argument is one line on stderr and exit 2.
+        """
+        from .command_line import parameters_or_exit
+
+        return parameters_or_exit(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
+
+
+def plain_type(field):
+    """Return bool, int, float or str for a pydantic `ModelField`; None for one that is a choice between words."""
+    if not isinstance(field.type_, type):
+        return None
+    return next(kind for kind in (bool, int, float, str) if issubclass(field.type_, kind))
+
+
+def choices(field):
+    """Return the tuple of words that a pydantic `ModelField` takes; empty if it is not a choice."""
+    return getattr(field.type_, "__args__", ())
+
+
+def digest(values):
+    """Return 12 hexadecimal characters that stand for a dict of plain values (order of keys does not matter)."""
+    text = json.dumps(values, sort_keys=True, default=repr, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def allowed(field):
+    """Return in words what values a parameter takes, from its pydantic `ModelField`: "a number > 0 [d]"."""
+    if choices(field):
+        return "one of " + ", ".join(map(str, choices(field)))
+    info = field.field_info
+    kind = {bool: "0 or 1", int: "a whole number", float: "a number", str: "text"}[plain_type(field)]
+    bounds = [f"{sign} {getattr(info, name)}" for name, sign in LIMITS.items() if getattr(info, name) is not None]
+    unit = info.extra.get("unit", "-")
+    words = [kind, " and ".join(bounds), f"[{unit}]" if unit != "-" else "", "or auto" if field.allow_none else ""]
+    return " ".join(word for word in words if word)

@@ -1,0 +1,225 @@
+"""Parameters: what a user may type, what it becomes, and the one line that answers a mistake."""
+
+import math
+import os
+import subprocess
+import sys
+from typing import Literal, Optional
+
+import pytest
+from hypothesis import given, strategies as st
+from pydantic import root_validator
+
+from graindrive.command_line import help_table, parse
+from graindrive.errors import UsageError
+from graindrive.parameters import StudyParameters, quantity
+
+PRESETS = {"smoke": {"time": 10.0, "width": 20.0}, "demo": {"time": 100.0}, "paper": {"time": 1000.0, "width": 300.0}}
+
+
+class Wiggle(StudyParameters):
+    shape: Literal["disk", "triangle"] = quantity("triangle", "-", "outline of the intruder")
+    amplitude: float = quantity(3.0, "d", "amplitude of the displacement", gt=0)
+    period: float = quantity(4.0, "sqrt(d/g)", "period of the drive", gt=0)
+    width: float = quantity(60.0, "d", "width of the box", ge=1, le=1e4)
+    time: float = quantity(100.0, "sqrt(d/g)", "length of the run", gt=0)
+    grains: int = quantity(1000, "-", "number of grains", ge=1)
+    lid: Optional[float] = quantity(None, "d", "height of the lid's load", ge=0)
+
+    @root_validator(skip_on_failure=True)
+    def _fits(cls, values):
+        if 2 * values["amplitude"] >= values["width"]:
+            raise ValueError(
+                f"the stroke 2 amplitude = {2 * values['amplitude']:g} d must be below width = {values['width']:g} d"
+            )
+        return values
+
+
+def parsed(*arguments, **options):
+    return parse(Wiggle, arguments, PRESETS, study="wiggle", environment={}, **options)
+
+
+def message(*arguments, **options):
+    with pytest.raises(UsageError) as caught:
+        parsed(*arguments, **options)
+    text = str(caught.value)
+    assert text.isprintable(), "the message must be one line"
+    return text
+
+
+def test_defaults_then_scale_then_user():
+    assert (parsed().time, parsed().width) == (100, 60)
+    assert (parsed("scale=paper").time, parsed("scale=paper").width) == (1000, 300)
+    assert parsed("time=7", "scale=paper").time == 7
+    preset = parsed("scale=smoke", defaults={"shape": "disk", "width": 33.0})
+    assert (preset.shape, preset.width) == ("disk", 20)
+
+
+def test_values_get_their_declared_types():
+    p = parsed("grains=1e3", "amplitude=2", "resume=1", "shape=disk", "lid=3.5")
+    assert (p.grains, p.amplitude, p.resume, p.shape, p.lid) == (1000, 2.0, True, "disk", 3.5)
+    assert isinstance(p.grains, int) and isinstance(p.amplitude, float) and p.resume is True
+    assert parsed("lid=auto").lid is None
+
+
+@pytest.mark.parametrize(
+    "argument, expected",
+    [
+        ("amplitud=3", ["no key 'amplitud'", "did you mean amplitude?", "allowed:", "period"]),
+        ("--amplitude=3", ["no key '--amplitude'", "did you mean amplitude?"]),
+        ("A" * 500 + "=1", ["no key", "…"]),
+        ("smoke", ["'smoke' is not of the form key=value", "scale=smoke"]),
+        ("period", ["not of the form key=value", "period=…"]),
+        ("period=abc", ["period=abc", "a number > 0", "[sqrt(d/g)]"]),
+        ("period=0", ["period=0", "> 0"]),
+        ("period=-2", ["period=-2", "> 0"]),
+        ("period=nan", ["period=nan", "> 0"]),
+        ("period=inf", ["period=inf", "> 0"]),
+        ("period=", ["period= is not allowed"]),
+        ("width=1e5", ["width=1e5", ">= 1 and <= 10000"]),
+        ("grains=2.5", ["grains=2.5", "a whole number >= 1"]),
+        ("grains=1e999", ["grains=1e999", "whole"]),
+        ("resume=2", ["resume=2", "0 or 1"]),
+        ("shape=triangel", ["shape=triangel", "one of disk, triangle", "did you mean triangle?"]),
+        ("scale=huge", ["scale=huge", "smoke, demo, paper"]),
+        ("lid=-1", ["lid=-1", ">= 0", "or auto"]),
+        ("out=a\nb", ["out=a b"]),
+    ],
+)
+def test_a_mistake_gets_one_line_with_given_allowed_and_nearest(argument, expected):
+    text = message(argument)
+    for part in expected:
+        assert part in text
+
+
+def test_a_key_given_twice_is_refused():
+    assert "period is given twice: period=1 and period=2" in message("period=1", "period=2")
+
+
+def test_a_condition_between_values_names_both():
+    assert message("amplitude=40") == "the stroke 2 amplitude = 80 d must be below width = 60 d"
+
+
+def test_a_scale_that_the_study_lacks():
+    with pytest.raises(UsageError, match="scale=paper is not known to x; allowed: demo"):
+        parse(Wiggle, ["scale=paper"], {"demo": {}}, study="x", environment={})
+
+
+def test_default_folder_is_readable_and_differs_between_runs():
+    assert parsed().out == "wiggle-demo"
+    assert parsed("period=2", "scale=smoke", "resume=1").out == "wiggle-smoke-period_2"
+    assert parsed("out=here").out == "here"
+    assert len(parsed("period=2." + "0" * 200).out) <= 120
+    assert "/" not in parse(Wiggle, ["period=2"], PRESETS, study="a/b", environment={}).out
+
+
+def test_identity_ignores_what_does_not_change_the_result():
+    assert parsed("out=a", "vtk=1").digest() == parsed("out=b", "redo=1").digest()
+    assert parsed("seed=1").digest() != parsed("seed=2").digest()
+    assert parsed("time=1000", "width=300").digest() == parsed("scale=paper").digest()
+
+
+def test_parameters_are_frozen():
+    with pytest.raises(TypeError):
+        parsed().period = 3
+
+
+def test_help_shows_every_key_with_unit_default_meaning_and_range():
+    table = help_table(Wiggle, PRESETS, study="wiggle")
+    for key in Wiggle.__fields__:
+        assert any(line.startswith(key + " ") for line in table.splitlines())
+    period = next(line for line in table.splitlines() if line.startswith("period "))
+    assert (
+        period.split()[:3] == ["period", "sqrt(d/g)", "4.0"]
+        and "period of the drive (a number > 0 [sqrt(d/g)])" in period
+    )
+    assert "smoke: 10.0, demo: 100.0, paper: 1000.0" in table
+
+
+@pytest.mark.parametrize("word", ["help", "--help", "-h"])
+def test_help_exits_0_and_a_mistake_exits_2(word, capsys):
+    with pytest.raises(SystemExit) as caught:
+        Wiggle.from_command_line(["nonsense=1", word], PRESETS, study="wiggle")
+    assert caught.value.code == 0 and "amplitude" in capsys.readouterr().out
+    with pytest.raises(SystemExit) as caught:
+        Wiggle.from_command_line(["nonsense=1"], PRESETS, study="wiggle")
+    captured = capsys.readouterr()
+    assert caught.value.code == 2 and captured.out == "" and captured.err.count("\n") == 1
+
+
+@given(st.floats(allow_nan=True, allow_infinity=True))
+def test_any_float_is_taken_exactly_or_refused(value):
+    if math.isfinite(value) and 0 < value:
+        assert parsed(f"period={value!r}").period == value
+    else:
+        message(f"period={value!r}")
+
+
+@given(st.integers())
+def test_any_integer_is_taken_exactly_or_refused(value):
+    if value >= 1:
+        assert parsed(f"grains={value}").grains == value
+    else:
+        message(f"grains={value}")
+
+
+@given(st.lists(st.text(), max_size=3))
+def test_no_text_escapes_the_one_line_answer(arguments):
+    try:
+        p = parsed(*arguments)
+    except UsageError as error:
+        assert str(error).isprintable()
+    else:
+        assert isinstance(p, Wiggle)
+
+
+@given(st.sampled_from(sorted(Wiggle.__fields__)), st.text())
+def test_no_value_escapes_the_one_line_answer(key, text):
+    try:
+        value = getattr(parsed(f"{key}={text}"), key)
+    except UsageError as error:
+        assert str(error).isprintable() and str(error).startswith(key)
+    else:
+        assert not isinstance(value, float) or math.isfinite(value)
+
+
+class TestBatchTable:
+    """A row of YADE's table, as yade-batch hands it over in YADE_BATCH."""
+
+    @pytest.fixture
+    def table(self, tmp_path):
+        pytest.importorskip("yade")
+        path = tmp_path / "table"
+        path.write_text(
+            "# periods\nperiod! shape seed !THREADS grains\npi/2 'disk' 1 2 *\n2 = 2 1 1e3\n3 = 3 1 10 # last\n"
+        )
+        return path
+
+    def row(self, table, line, *arguments):
+        return parse(Wiggle, arguments, PRESETS, study="w", environment={"YADE_BATCH": f"{table}:{line}"})
+
+    def test_rows(self, table):
+        first, second = self.row(table, 3), self.row(table, 4)
+        assert (first.period, first.shape, first.grains) == (math.pi / 2, "disk", 1000)
+        assert (second.period, second.shape, second.seed, second.grains) == (2, "disk", 2, 1000)
+        assert first.out != second.out
+
+    def test_mistakes(self, table):
+        with pytest.raises(UsageError, match="period is given twice"):
+            self.row(table, 3, "period=1")
+        with pytest.raises(UsageError, match="line 99 of batch table .* cannot be read"):
+            self.row(table, 99)
+        with pytest.raises(UsageError, match="No such file"):
+            self.row(str(table) + "x", 3)
+        table.write_text("perod\n1\n")
+        with pytest.raises(UsageError, match="no key 'perod'; did you mean period"):
+            self.row(table, 2)
+
+    def test_no_batch(self):
+        assert parse(Wiggle, [], PRESETS, study="w", environment={"YADE_BATCH": ""}).period == 4
+
+
+def test_parsing_needs_neither_yade_nor_a_display():
+    code = "import sys, graindrive.parameters, graindrive.command_line; sys.exit('yade' in sys.modules)"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
