@@ -1,0 +1,14 @@
+/// The Python module `graindrive._engines`: proves YADE's layout, then registers every engine, functor and function.
+#include <boost/python.hpp>
+
+#include "engines/seam/layout.hpp"
+
+namespace graindrive {
+}  // namespace graindrive
+
+BOOST_PYTHON_MODULE(_engines)
+{
+	boost::python::docstring_options docs(true, true, false);
+	graindrive::seam::bind_layout();
+	graindrive::seam::prove_layout({});
+}

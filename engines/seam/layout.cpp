@@ -1,0 +1,362 @@
+/// Proof, at import, that YADE's classes lie in memory as `yade_classes.hpp` declares them.
+#include "engines/seam/layout.hpp"
+
+#include <cxxabi.h>
+#include <dlfcn.h>
+#include <malloc.h>
+
+#include <array>
+#include <cstring>
+#include <sstream>
+
+#include "engines/seam/memory_probe.hpp"
+#include "engines/seam/yade.hpp"
+
+#pragma GCC diagnostic ignored "-Winvalid-offsetof" // the point of this file
+
+namespace graindrive::seam {
+namespace {
+
+namespace py = boost::python;
+using std::string;
+using Address = std::uintptr_t;
+
+constexpr const char* proven_version = "2023.02a";
+
+[[noreturn]] void refuse(const string& what)
+{
+	const string message = "graindrive does not fit this YADE: " + what
+	        + ". Graindrive's engines were not loaded. Use Debian 12's YADE " + proven_version
+	        + ", or build Graindrive against your YADE's source tree (cmake -DYADE_INCLUDE_DIR=...).";
+	PyErr_SetString(PyExc_ImportError, message.c_str());
+	py::throw_error_already_set();
+	throw std::logic_error("unreachable");
+}
+
+Address address_of(const py::object& object) { return reinterpret_cast<Address>(&py::extract<yade::Serializable&>(object)()); }
+
+string symbol_at(Address code)
+{
+	Dl_info info;
+	if (!dladdr(reinterpret_cast<void*>(code), &info) || !info.dli_sname) return "(no symbol)";
+	int status = 0;
+	char* name = abi::__cxa_demangle(info.dli_sname, nullptr, nullptr, &status);
+	const string result = status == 0 ? name : info.dli_sname;
+	free(name);
+	return result;
+}
+
+template <class T>
+string raw(const T& value)
+{
+	return string(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+class Proof {
+public:
+	explicit Proof(const py::dict& damage) : damage_(damage), yade_(py::import("yade.wrapper")), eigen_(py::import("yade.minieigenHP")) { }
+
+	int run()
+	{
+		if (!probe_.usable()) refuse("cannot read /proc/self/mem, which the proof of its class layout needs (mount /proc)");
+		version();
+		sizes();
+		engine_and_functors();
+		state();
+		body_and_shape();
+		interaction();
+		contact();
+		scene();
+		virtual_functions();
+		return facts_;
+	}
+
+private:
+	py::object make(const char* cls) const { return yade_.attr(cls)(); }
+
+	std::size_t declared(const string& member, std::size_t offset) const
+	{
+		return offset + py::extract<int>(damage_.get(member, 0));
+	}
+
+	/// The declared place of a member must hold these bytes; where it does not, say where they are.
+	void holds(const string& member, const py::object& object, std::size_t offset, const string& sentinel)
+	{
+		const Address start = address_of(object);
+		const std::size_t at = declared(member, offset);
+		++facts_;
+		if (probe_.bytes(start + at, sentinel.size()) == sentinel) return;
+		const std::size_t found = probe_.bytes(start, malloc_usable_size(reinterpret_cast<void*>(start))).find(sentinel, 24);
+		std::ostringstream message;
+		message << member << " is expected at byte " << at << " but ";
+		if (found == string::npos) message << "its value was not found in the object";
+		else message << "was found at byte " << found;
+		refuse(message.str());
+	}
+
+	/// Sets an attribute by YADE's own means (which reaches read-only ones too), then looks for it.
+	template <class T>
+	void attribute(const string& cls, const string& name, const py::object& object, std::size_t offset, const py::object& value, const T& bytes)
+	{
+		py::dict update;
+		update[name] = value;
+		object.attr("updateAttrs")(update);
+		holds(cls + "." + name, object, offset, raw(bytes));
+	}
+	void real(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	{
+		const Real value = next();
+		attribute(cls, name, object, offset, py::object(value), value);
+	}
+	void vector(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	{
+		const Real v[3] = { next(), next(), next() };
+		attribute(cls, name, object, offset, eigen_.attr("Vector3")(v[0], v[1], v[2]), v);
+	}
+	template <class Integer>
+	void integer(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	{
+		const Integer value = static_cast<Integer>(0x11223300 + ++sentinel_);
+		attribute(cls, name, object, offset, py::object(value), value);
+	}
+	void pointer(const string& member, const py::object& object, std::size_t offset, const py::object& target)
+	{
+		holds(member, object, offset, raw(address_of(target)));
+	}
+	Real next() { return 1.0625e7 + 3 * ++sentinel_; }
+
+	void version()
+	{
+		const string found = py::extract<string>(py::import("yade.config").attr("version"));
+		++facts_;
+#ifndef GRAINDRIVE_YADE_HEADERS
+		if (found != proven_version) refuse("version is " + found + ", expected " + proven_version);
+#endif
+	}
+
+	template <class T>
+	void size(const char* cls)
+	{
+		py::object object = make(cls);
+		const std::size_t usable = malloc_usable_size(reinterpret_cast<void*>(address_of(object)));
+		const std::size_t expected = declared(string(cls) + ".size", sizeof(T));
+		++facts_;
+		if (expected <= usable && usable < expected + 16) return; // the allocator rounds up to 8 modulo 16
+		std::ostringstream message;
+		message << cls << " is expected to take " << expected << " bytes but has a block of " << usable;
+		refuse(message.str());
+	}
+	/// Only classes that engines derive from: there a wrong size would put our members over YADE's.
+	void sizes()
+	{
+		size<yade::Engine>("Engine");
+		size<yade::LawFunctor>("LawFunctor");
+		size<yade::IPhysFunctor>("IPhysFunctor");
+		size<yade::FrictPhys>("FrictPhys");
+	}
+
+	void label(const char* cls, std::size_t offset)
+	{
+		py::object object = make(cls);
+		object.attr("label") = "sentinel";
+		const auto length = raw(std::size_t(8)) + "sentinel";
+		holds(string(cls) + ".label", object, offset + 8, length); // std::string: data pointer, length, short text
+	}
+	void engine_and_functors()
+	{
+		py::object engine = make("Engine");
+		integer<int>("Engine", "ompThreads", engine, offsetof(yade::Engine, ompThreads));
+		attribute("Engine", "dead", engine, offsetof(yade::Engine, dead), py::object(true), true);
+		label("Engine", offsetof(yade::Engine, label));
+		pointer("Engine.scene", engine, offsetof(yade::Engine, scene), py::import("yade").attr("O").attr("_sceneObj"));
+		label("LawFunctor", offsetof(yade::LawFunctor, label));
+		label("IPhysFunctor", offsetof(yade::IPhysFunctor, label));
+	}
+
+	void state()
+	{
+		py::object state = make("State");
+		vector("State", "vel", state, offsetof(yade::State, vel));
+		vector("State", "angVel", state, offsetof(yade::State, angVel));
+		vector("State", "angMom", state, offsetof(yade::State, angMom));
+		vector("State", "inertia", state, offsetof(yade::State, inertia));
+		vector("State", "refPos", state, offsetof(yade::State, refPos));
+		real("State", "mass", state, offsetof(yade::State, mass));
+		real("State", "densityScaling", state, offsetof(yade::State, densityScaling));
+		const Real position[3] = { next(), next(), next() };
+		state.attr("pos") = eigen_.attr("Vector3")(position[0], position[1], position[2]);
+		holds("State.pos", state, offsetof(yade::State, pos), raw(position));
+		const Real unit[4] = { 0.5, -0.5, 0.5, 0.5 }; // stored x, y, z, w; made from w, x, y, z
+		state.attr("ori") = eigen_.attr("Quaternion")(unit[3], unit[0], unit[1], unit[2]);
+		holds("State.ori", state, offsetof(yade::State, ori), raw(unit));
+		state.attr("blockedDOFs") = "xZ";
+		holds("State.blockedDOFs", state, offsetof(yade::State, blockedDOFs), raw(unsigned(yade::State::DOF_X | yade::State::DOF_RZ)));
+	}
+
+	void body_and_shape()
+	{
+		py::object body = make("Body"), material = make("FrictMat"), shape = make("Sphere"), state = make("State");
+		integer<int>("Body", "id", body, offsetof(yade::Body, id));
+		integer<int>("Body", "flags", body, offsetof(yade::Body, flags));
+		integer<int>("Body", "clumpId", body, offsetof(yade::Body, clumpId));
+		body.attr("mat") = material;
+		body.attr("shape") = shape;
+		body.attr("state") = state;
+		pointer("Body.material", body, offsetof(yade::Body, material), material);
+		pointer("Body.shape", body, offsetof(yade::Body, shape), shape);
+		pointer("Body.state", body, offsetof(yade::Body, state), state);
+		empty_map("Body.intrs", body, offsetof(yade::Body, intrs));
+		real("Sphere", "radius", shape, offsetof(yade::Sphere, radius));
+		real("FrictMat", "frictionAngle", material, offsetof(yade::FrictMat, frictionAngle));
+		real("FrictMat", "density", material, offsetof(yade::FrictMat, density));
+	}
+	/// An empty std::map: no root, leftmost and rightmost point at the map's own header, no elements.
+	void empty_map(const string& member, const py::object& object, std::size_t offset)
+	{
+		const Address header = address_of(object) + declared(member, offset) + 8;
+		const Address expected[4] = { 0, header, header, 0 };
+		holds(member, object, offset + 16, raw(expected));
+	}
+
+	void interaction()
+	{
+		py::object contact = make("Interaction"), geom = make("ScGeom"), phys = make("FrictPhys");
+#ifndef GRAINDRIVE_YADE_HEADERS // there the ids are private
+		integer<int>("Interaction", "id1", contact, offsetof(yade::Interaction, id1));
+		integer<int>("Interaction", "id2", contact, offsetof(yade::Interaction, id2));
+#endif
+		integer<long>("Interaction", "iterMadeReal", contact, offsetof(yade::Interaction, iterMadeReal));
+		contact.attr("geom") = geom;
+		contact.attr("phys") = phys;
+		pointer("Interaction.geom", contact, offsetof(yade::Interaction, geom), geom);
+		pointer("Interaction.phys", contact, offsetof(yade::Interaction, phys), phys);
+	}
+
+	void contact()
+	{
+		py::object geom = make("ScGeom"), phys = make("FrictPhys");
+		vector("ScGeom", "normal", geom, offsetof(yade::ScGeom, normal));
+		vector("ScGeom", "contactPoint", geom, offsetof(yade::ScGeom, contactPoint));
+		real("ScGeom", "refR1", geom, offsetof(yade::ScGeom, refR1));
+		real("ScGeom", "refR2", geom, offsetof(yade::ScGeom, refR2));
+		real("ScGeom", "penetrationDepth", geom, offsetof(yade::ScGeom, penetrationDepth));
+		real("FrictPhys", "kn", phys, offsetof(yade::FrictPhys, kn));
+		real("FrictPhys", "ks", phys, offsetof(yade::FrictPhys, ks));
+		vector("FrictPhys", "normalForce", phys, offsetof(yade::FrictPhys, normalForce));
+		vector("FrictPhys", "shearForce", phys, offsetof(yade::FrictPhys, shearForce));
+		real("FrictPhys", "tangensOfFrictionAngle", phys, offsetof(yade::FrictPhys, tangensOfFrictionAngle));
+	}
+
+	void scene()
+	{
+		py::object scene = make("Scene"); // a scene of our own: the user's is not touched
+		real("Scene", "dt", scene, offsetof(yade::Scene, dt));
+		real("Scene", "time", scene, offsetof(yade::Scene, time));
+		integer<long>("Scene", "iter", scene, offsetof(yade::Scene, iter));
+		integer<long>("Scene", "stopAtIter", scene, offsetof(yade::Scene, stopAtIter));
+		integer<int>("Scene", "subStep", scene, offsetof(yade::Scene, subStep));
+		attribute("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic), py::object(true), true);
+		points_to("Scene.bodies", scene, offsetof(yade::Scene, bodies), "vtable for yade::BodyContainer");
+		points_to("Scene.interactions", scene, offsetof(yade::Scene, interactions), "vtable for yade::InteractionContainer");
+		engine_list();
+		forces(scene);
+	}
+	void points_to(const string& member, const py::object& object, std::size_t offset, const string& vtable)
+	{
+		const auto target = probe_.read<Address>(address_of(object) + declared(member, offset));
+		const auto vptr = target ? probe_.read<Address>(*target) : std::nullopt;
+		++facts_;
+		if (vptr && symbol_at(*vptr) == vtable) return;
+		refuse(member + " is expected to point at an object with " + vtable + " but has " + (vptr ? symbol_at(*vptr) : "no pointer"));
+	}
+	/// O.engines is put back as it was.
+	void engine_list()
+	{
+		py::object omega = py::import("yade").attr("O"), before = omega.attr("engines"), engine = make("Engine");
+		py::list one;
+		one.append(engine);
+		omega.attr("engines") = one;
+		const auto begin = probe_.read<Address>(address_of(omega.attr("_sceneObj")) + declared("Scene.engines", offsetof(yade::Scene, engines)));
+		const auto first = begin ? probe_.read<Address>(*begin) : std::nullopt;
+		omega.attr("engines") = before;
+		++facts_;
+		if (!first || *first != address_of(engine)) refuse("Scene.engines does not lead to the first engine of O.engines");
+	}
+	/// A vector of arrays, one a thread, at its start; then YADE's own functions must find there what they put there.
+	void forces(const py::object& scene)
+	{
+		const Address start = address_of(scene) + declared("Scene.forces", offsetof(yade::Scene, forces));
+		const auto first = probe_.read<Address>(start), last = probe_.read<Address>(start + 8);
+		++facts_;
+		if (!first || !last || *last <= *first || (*last - *first) % sizeof(std::vector<Vector3r>) != 0 || *last - *first > 1u << 16)
+			refuse("Scene.forces does not start with YADE's arrays of forces, one a thread");
+		const Vector3r sentinel(next(), next(), next());
+		auto* container = reinterpret_cast<yade::ForceContainer*>(start);
+		container->addForce(1, sentinel);
+		const auto data = probe_.read<Address>(*first);
+		const auto found = data ? probe_.read<std::array<Real, 3>>(*data + sizeof(Vector3r)) : std::nullopt;
+		++facts_;
+		if (!found || std::memcmp(found->data(), sentinel.data(), sizeof *found) != 0)
+			refuse("a force added to Scene.forces was not found in its arrays");
+	}
+
+	/// Slot by slot, the symbols behind an object's vptr.
+	void slots(const string& cls, const py::object& object, std::size_t vptr_offset, int first, const std::vector<string>& expected)
+	{
+		const auto vptr = probe_.read<Address>(address_of(object) + vptr_offset);
+		for (std::size_t i = 0; i < expected.size(); ++i) {
+			const auto code = vptr ? probe_.read<Address>(*vptr + (first + i) * sizeof(Address)) : std::nullopt;
+			const string found = code ? symbol_at(*code) : "nothing";
+			++facts_;
+			if (found.find(expected[i]) != string::npos) continue;
+			std::ostringstream message;
+			message << "virtual function " << first + i << " of " << cls << " is expected to be " << expected[i] << " but is " << found;
+			refuse(message.str());
+		}
+	}
+	void virtual_functions()
+	{
+		const std::vector<string> serializable { "::getBaseClassName", "::getBaseClassNumber", "::getClassName", "::pySetAttr", "::pyDict",
+			"::pyDictCustom", "::callPostLoad", "::checkPyClassRegistersItself", "::pyRegisterClass", "::pyHandleCustomCtorArgs" };
+		py::object engine = make("Engine"), law = make("LawFunctor"), iphys = make("IPhysFunctor"), phys = make("FrictPhys");
+		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>> { { "Engine", engine }, { "LawFunctor", law },
+		             { "IPhysFunctor", iphys }, { "FrictPhys", phys } }) {
+			slots(cls, object, 0, 0, { "::~" + cls, "::~" + cls });
+			slots(cls, object, 0, 2, serializable);
+		}
+		slots("Engine", engine, 0, 12, { "yade::Engine::isActivated()", "yade::Engine::action()" });
+		slots("FrictPhys", phys, 0, 12,
+		      { "::modifyClassIndex", "::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin",
+		        "::incrementMaxCurrentlyUsedClassIndexOfKin" });
+		slots("FrictPhys (Indexable)", phys, 24, 0,
+		      { "::incrementMaxCurrentlyUsedClassIndexOfKin", "::modifyClassIndex", "::~FrictPhys", "::~FrictPhys", "::getClassIndex",
+		        "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin" });
+		std::vector<string> wrapper { "::checkOrder" };
+		for (const char* name : { "::go(", "::goReverse(" }) wrapper.insert(wrapper.end(), 7, name);
+		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>> { { "LawFunctor", law }, { "IPhysFunctor", iphys } }) {
+			slots(cls, object, 0, 12, { "::getFunctorTypes", "::get2DFunctorType1", "::get2DFunctorType2" });
+			slots(cls + " (wrapper)", object, 80, 0, { "::~" + cls, "::~" + cls });
+			slots(cls + " (wrapper)", object, 80, 2, wrapper);
+		}
+	}
+
+	py::dict damage_;
+	py::object yade_, eigen_;
+	MemoryProbe probe_;
+	int facts_ = 0;
+	int sentinel_ = 0;
+};
+
+}  // namespace
+
+int prove_layout(const py::dict& damage) { return Proof(damage).run(); }
+
+void bind_layout()
+{
+	py::def("prove_layout", prove_layout, (py::arg("damage") = py::dict()),
+	        "Prove that YADE's classes lie in memory as Graindrive's engines expect.\n\n"
+	        "damage: {'State.vel': 8} shifts a declared offset by bytes (for the test that the proof can fail).\n"
+	        "Returns the number of facts proven. Raises ImportError naming class, member, expected and found.");
+}
+
+}  // namespace graindrive::seam
