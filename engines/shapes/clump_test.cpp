@@ -1,0 +1,170 @@
+/// Beads: their envelope is the outline, never more; their steps are as asked; the clump has the solid's mass and inertia.
+#include "engines/shapes/clump.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engines/shapes/built_in.hpp"
+#include "engines/shapes/inset.hpp"
+#include "engines/shapes/solid.hpp"
+#include "engines/shapes/test_support.hpp"
+
+using namespace graindrive;
+using namespace graindrive::shapes;
+
+namespace {
+
+constexpr Real round_off = 1e-12;  // of lengths of order 10: what CGAL's inexact constructions may leave
+
+Eigen::AlignedBox<Real, 2> box_of(const Points& centres, Real radius)
+{
+	Eigen::AlignedBox<Real, 2> box;
+	for (const Vector2r& c : centres) box.extend(c);
+	return { Vector2r(box.min() - Vector2r::Constant(radius)), Vector2r(box.max() + Vector2r::Constant(radius)) };
+}
+
+Real longest_step(const Points& centres)
+{
+	Real longest = 0;
+	for (std::size_t i = 0; i < centres.size(); ++i)
+		longest = std::max(longest, (centres[(i + 1) % centres.size()] - centres[i]).norm());
+	return longest;
+}
+
+Real largest_gap(const Outline& outline, const Points& centres, Real radius)
+{
+	Real largest = 0;
+	for (const Vector2r& v : outline.vertices()) {
+		Real nearest = outline.extent();
+		for (const Vector2r& c : centres) nearest = std::min(nearest, (c - v).norm() - radius);
+		largest = std::max(largest, nearest);
+	}
+	return largest;
+}
+
+bool is_inside(const Outline& outline, const Vector2r& p)
+{
+	bool inside = false;
+	const Points& v = outline.vertices();
+	for (std::size_t i = 0, j = v.size() - 1; i < v.size(); j = i++)
+		if ((v[i].y() > p.y()) != (v[j].y() > p.y()) &&
+			p.x() < v[i].x() + (p.y() - v[i].y()) / (v[j].y() - v[i].y()) * (v[j].x() - v[i].x()))
+			inside = !inside;
+	return inside;
+}
+
+void expect_envelope(const Outline& outline, const Points& centres, Real radius)
+{
+	for (const Vector2r& c : centres) {
+		EXPECT_TRUE(outline.is_disk() || is_inside(outline, c));
+		EXPECT_GE(distance_to(outline, c), radius - round_off);
+	}
+}
+
+}  // namespace
+
+TEST(Beads, give_the_outer_sizes_of_the_built_in_shapes_exactly)
+{
+	for (const char* name : { "disk", "square", "tall", "wide" }) {
+		const Outline outline = outline_of(name);
+		const Vector2r beaded = box_of(beads(outline, 0.5), 0.25).sizes(), drawn = box_of(outline.vertices(), 0).sizes();
+		EXPECT_NEAR(beaded.x(), drawn.x(), round_off) << name;
+		EXPECT_NEAR(beaded.y(), drawn.y(), round_off) << name;
+	}
+	// A corner of 60 degrees is rounded: the apex bead's top is R/sin 30 - R = R below the apex, sides are R (sqrt 3 - 1) in.
+	const Vector2r triangle = box_of(beads(outline_of("triangle"), 0.5), 0.25).sizes();
+	EXPECT_NEAR(triangle.y(), 9.5 * std::sqrt(3.0) / 2 - 0.25, round_off);
+	EXPECT_NEAR(triangle.x(), 9.5 - 2 * 0.25 * (std::sqrt(3.0) - 1), round_off);
+}
+
+TEST(Beads, touch_the_outline_from_inside_at_steps_no_longer_than_asked)
+{
+	for (const std::string& name : shape_names())
+		for (const Real spacing : { 1.0, 0.5, 0.21 }) {
+			const Outline outline = outline_of(name, {}, 0.3);
+			const Points centres = beads(outline, 0.5, spacing);
+			expect_envelope(outline, centres, 0.25);
+			for (const Vector2r& c : centres) EXPECT_NEAR(distance_to(outline, c), 0.25, round_off) << name;
+			EXPECT_LE(longest_step(centres), spacing * 0.5 * (1 + 1e-8))
+				<< name;  // a step may pass by round-off, see `step_slack`
+		}
+}
+
+TEST(Beads, are_as_few_as_the_steps_allow)
+{
+	EXPECT_EQ(beads(outline_of("square"), 0.5).size(), 48u);  // inset side 6 = 12 steps of 0.5
+	EXPECT_EQ(beads(outline_of("square"), 0.5, 0.5).size(), 96u);
+	EXPECT_EQ(beads(outline_of("disk"), 0.5).size(), 44u);  // circumference 2 pi 3.25 / 0.5 = 40.8, to a multiple of 4
+	EXPECT_EQ(beads(Outline::disk(0.5), 0.5).size(), 1u);
+}
+
+TEST(Beads, roll_round_a_reflex_corner)
+{
+	const Outline l({ { 0, 0 }, { 8, 0 }, { 8, 4 }, { 4, 4 }, { 4, 8 }, { 0, 8 } });
+	const Points centres = beads(l, 0.5, 0.25);
+	expect_envelope(l, centres, 0.25);
+	for (const Vector2r& c : centres)
+		EXPECT_NEAR(distance_to(l, c), 0.25, round_off);  // a mitre would stand 0.25 (sqrt 2 - 1) off
+	EXPECT_LE(longest_step(centres), 0.125 * (1 + 1e-8));
+}
+
+TEST(Beads, follow_a_finely_drawn_curve_without_crowding)
+{
+	const Outline drawn(Outline::disk(7).vertices());
+	const Points centres = beads(drawn, 0.5);
+	EXPECT_NEAR(centres.size(), 41, 1);  // not the 360 corners
+	expect_envelope(drawn, centres, 0.25);
+	// Deepest cusp between touching beads: sqrt(R_b^2 + 2 R (R - R_b) (1 - cos a)) - R_b with sin a = R_b / (R - R_b).
+	const Real r = 0.25, inner = 3.5 - r,
+			   cusp = std::sqrt(r * r + 2 * 3.5 * inner * (1 - std::sqrt(1 - r * r / (inner * inner)))) - r;
+	EXPECT_LE(largest_gap(drawn, centres, r), cusp * 1.01);  // the drawn polygon lies 4e-5 R inside its circle
+}
+
+TEST(Beads, stay_inside_random_stars_and_reach_their_corners)
+{
+	int made = 0;
+	for (unsigned seed = 0; seed < 300; ++seed) {
+		const Outline outline(star(seed));
+		Points centres;
+		const std::string refused = complaint([&] { centres = beads(outline, 0.3, 0.5); });
+		EXPECT_TRUE(refused.empty() || mentions(refused, "too thin")) << seed << ": " << refused;
+		expect_envelope(outline, centres, 0.15);
+		if (!refused.empty()) continue;
+		++made;
+		EXPECT_LE(largest_gap(outline, centres, 0.15), 2 * 0.3) << seed;
+	}
+	EXPECT_GT(made, 200);  // most stars are thick enough
+}
+
+TEST(Beads, refuse_shapes_that_are_too_thin_for_them)
+{
+	EXPECT_TRUE(mentions(complaint([] { beads(outline_of("wide", { 9, 0.4 }), 0.5); }), "not one bead fits"));
+	const Outline dumbbell({ { 0, 0 }, { 4, 0 }, { 4, 1.9 }, { 6, 1.9 }, { 6, 0 }, { 10, 0 }, { 10, 4 }, { 6, 4 }, { 6, 2.1 },
+		{ 4, 2.1 }, { 4, 4 }, { 0, 4 } });
+	EXPECT_TRUE(mentions(complaint([&] { beads(dumbbell, 0.5); }), "2 separate rings"));
+	const Outline flag({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0.3, 4 }, { 0.3, 9 }, { 0, 9 } });
+	const std::string pole = complaint([&] { beads(flag, 0.5); });
+	EXPECT_TRUE(mentions(pole, "(0.3, 9)") || mentions(pole, "(0, 9)")) << pole;
+	EXPECT_TRUE(mentions(complaint([] { beads(Outline::disk(0.4), 0.5); }), "must not exceed the disk's"));
+}
+
+TEST(Beads, refuse_sizes_and_spacings_out_of_range)
+{
+	const Outline square = outline_of("square");
+	for (const Real bad : { 0.0, -0.5, std::nan("") }) {
+		EXPECT_TRUE(mentions(complaint([&] { beads(square, bad); }), "bead diameter must be positive"));
+		EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, bad); }), "spacing must lie in (0, 1]"));
+		EXPECT_TRUE(mentions(complaint([&] { clump_of(square, 0.5, bad); }), "mass must be positive"));
+	}
+	EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, 1.01); }), "got 1.01"));
+}
+
+TEST(Clump, has_the_solids_mass_and_inertia_about_its_centroid)
+{
+	const Outline off_centre = outline_of("square", { 4 }).seen_from({ -10, 3 });
+	const Clump clump = clump_of(off_centre, 0.5, 12, 0.5);
+	EXPECT_DOUBLE_EQ(clump.mass, 12);
+	EXPECT_NEAR(clump.inertia, 12 * 16.0 / 6, round_off);
+	EXPECT_NEAR(box_of(clump.beads, clump.bead_radius).center().norm(), 0, round_off);
+}
