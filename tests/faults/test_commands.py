@@ -1,0 +1,178 @@
+"""The commands a person runs: what they say and how they exit when something is missing, wrong, busy or interrupted.
+
+A miniature checkout (the real scripts, an empty CMake project) and stand-ins for Debian's programs make every fault
+cheap to provoke; nothing here installs anything.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+NO_PACKAGES = {"GRAINDRIVE_NO_PACKAGES": "1"}
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A checkout with the real scripts, two studies and nothing to compile."""
+    top = tmp_path / "checkout"
+    (top / "studies").mkdir(parents=True)
+    shutil.copytree(ROOT / "scripts", top / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+    (top / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(miniature LANGUAGES NONE)\n")
+    (top / "studies" / "wiggle.py").write_text(
+        '"""A triangle that wiggles."""\nimport sys\nsys.exit(int(sys.argv[1]))\n'
+    )
+    (top / "studies" / "magnus.py").write_text('"""A disk that spins."""\n')
+    return top
+
+
+@pytest.fixture
+def stand_in(tmp_path):
+    """A function that puts a shell script in front of a program on PATH; the environment to use is its attribute."""
+    folder = tmp_path / "stand-ins"
+    folder.mkdir()
+
+    def put(program, body):
+        (folder / program).write_text(f"#!/bin/sh\n{body}\n")
+        (folder / program).chmod(0o755)
+
+    put.environment = {"PATH": f"{folder}:/usr/bin:/bin:/usr/sbin:/sbin"}
+    return put
+
+
+def call(checkout, *command, environment=NO_PACKAGES, **options):
+    """Run `scripts/…` of the miniature checkout; returns the finished process with its text."""
+    surroundings = {name: value for name, value in os.environ.items() if not name.startswith("GRAINDRIVE_")}
+    return subprocess.run(
+        [checkout / "scripts" / command[0], *command[1:]],
+        env=surroundings | environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        **options,
+    )
+
+
+def test_run_alone_lists_studies_with_their_first_line(checkout):
+    done = call(checkout, "run")
+    assert done.returncode == 0
+    assert "wiggle" in done.stdout and "A triangle that wiggles." in done.stdout
+
+
+def test_unknown_study_names_the_nearest_and_sets_nothing_up(checkout):
+    done = call(checkout, "run", "wigle")
+    assert done.returncode == 2
+    assert "'wigle'" in done.stderr and "did you mean 'wiggle'?" in done.stderr and "magnus wiggle" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (checkout / "build").exists()
+
+
+@pytest.mark.parametrize("threads", ["0", "two", "-1"])
+def test_run_refuses_threads_that_are_no_number(checkout, threads):
+    done = call(checkout, "run", "wiggle", environment={"GRAINDRIVE_THREADS": threads})
+    assert done.returncode == 2 and f"got '{threads}'" in done.stderr
+
+
+@pytest.mark.parametrize("study", ["wiggle", "wiggle.py", "studies/wiggle.py"])
+@pytest.mark.parametrize("code", [0, 3])
+def test_run_passes_the_exit_code_of_the_study(checkout, study, code):
+    assert call(checkout, "run", study, str(code)).returncode == code
+
+
+def test_second_setup_says_nothing_and_is_quick(checkout):
+    assert call(checkout, "setup").returncode == 0
+    begin = time.monotonic()
+    done = call(checkout, "setup")
+    assert time.monotonic() - begin < 3  # the promise in scripts/setup's contract [s]
+    assert done.returncode == 0 and done.stdout == done.stderr == ""
+
+
+def test_two_setups_at_once_both_end_well(checkout):
+    together = [subprocess.Popen([checkout / "scripts" / "setup"], env=os.environ | NO_PACKAGES) for _ in range(2)]
+    assert [one.wait(60) for one in together] == [0, 0]
+
+
+def test_moved_checkout_is_configured_anew(checkout):
+    call(checkout, "setup")
+    moved = checkout.rename(checkout.with_name("moved"))
+    done = call(moved, "setup")
+    assert done.returncode == 0 and "has moved" in done.stderr
+    assert str(moved) in (moved / "build" / "CMakeCache.txt").read_text()
+
+
+def test_settings_reach_cmake_once(checkout):
+    assert "configuring" in call(checkout, "setup", "-DCOLOUR=blue").stderr
+    assert "COLOUR:UNINITIALIZED=blue" in (checkout / "build" / "CMakeCache.txt").read_text()
+    assert call(checkout, "setup", "-DCOLOUR=blue").stderr == ""
+
+
+def test_unknown_option_is_refused(checkout):
+    done = call(checkout, "setup", "--fast")
+    assert done.returncode == 2 and "--fast" in done.stderr
+    assert not (checkout / "build").exists()
+
+
+def test_failed_download_names_the_way_out(checkout, stand_in):
+    stand_in("dpkg-query", "exit 1")
+    stand_in("dpkg", "exit 0")
+    stand_in("sudo", '"$@"')
+    stand_in("apt-get", "echo 'E: Failed to fetch' >&2; exit 100")
+    done = call(checkout, "setup", environment=stand_in.environment)
+    assert done.returncode == 1
+    assert "E: Failed to fetch" in done.stderr and "network" in done.stderr and "apt-get install" in done.stderr
+
+
+def test_only_missing_packages_are_installed(checkout, stand_in, tmp_path):
+    stand_in("dpkg-query", f"sed 's/[ #].*//; /^$/d; /^yade/d; s/^/installed /' {checkout}/scripts/packages.txt")
+    stand_in("dpkg", "exit 0")
+    stand_in("sudo", '"$@"')
+    stand_in("apt-get", f'echo "$@" >>{tmp_path}/calls')
+    call(checkout, "setup", environment=stand_in.environment)
+    update, install = (tmp_path / "calls").read_text().splitlines()
+    assert update.endswith("update") and install.endswith("install --no-install-recommends yade")
+
+
+def test_no_sudo_tells_what_to_ask_for(checkout, stand_in, tmp_path):
+    stand_in("dpkg-query", "exit 1")
+    if os.geteuid() == 0:
+        pytest.skip("root needs no sudo")
+    (tmp_path / "bin").mkdir()
+    for program in "bash dirname sed comm sort flock mkdir apt-get".split():
+        (tmp_path / "bin" / program).symlink_to(shutil.which(program, path="/usr/bin:/bin"))
+    done = call(checkout, "setup", environment={"PATH": f"{tmp_path}/stand-ins:{tmp_path}/bin"})
+    assert done.returncode == 1 and "no sudo" in done.stderr and "apt-get install" in done.stderr
+
+
+def test_read_only_checkout_is_named(checkout):
+    (checkout / "build").write_text("")  # a file where the folder must be: refused even to root
+    done = call(checkout, "setup")
+    assert done.returncode == 1 and f"cannot write to {checkout}/build" in done.stderr
+
+
+def test_interrupted_setup_exits_130_and_the_next_call_completes(checkout, stand_in):
+    stand_in("cmake", "sleep 30")
+    setup = subprocess.Popen(
+        [checkout / "scripts" / "setup"], env=os.environ | NO_PACKAGES | stand_in.environment, start_new_session=True
+    )
+    time.sleep(0.5)
+    os.killpg(setup.pid, signal.SIGINT)  # as Ctrl-C does: to the whole foreground group
+    assert setup.wait(20) == 130
+    assert call(checkout, "setup").returncode == 0
+
+
+def test_a_stopped_run_stops_the_study(checkout):
+    (checkout / "studies" / "wiggle.py").write_text("import time\nprint('ready', flush=True)\ntime.sleep(60)\n")
+    call(checkout, "setup")
+    run = subprocess.Popen(
+        [checkout / "scripts" / "run", "wiggle"], env=os.environ | NO_PACKAGES, stdout=subprocess.PIPE, text=True
+    )
+    while "ready" not in run.stdout.readline():
+        pass
+    run.send_signal(signal.SIGTERM)
+    assert run.wait(20) != 0
