@@ -4,6 +4,8 @@
 #include "engines/seam/layout.hpp"
 
 namespace graindrive {
+void bind_functors();
+void bind_drives();
 }  // namespace graindrive
 
 BOOST_PYTHON_MODULE(_engines)
@@ -11,4 +13,6 @@ BOOST_PYTHON_MODULE(_engines)
 	boost::python::docstring_options docs(true, true, false);
 	graindrive::seam::bind_layout();
 	graindrive::seam::prove_layout({});
+	graindrive::bind_functors();
+	graindrive::bind_drives();
 }

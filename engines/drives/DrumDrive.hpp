@@ -1,0 +1,33 @@
+/// A set of bodies turns rigidly about an axis: a drum's wall.
+#pragma once
+#include "engines/base/motion.hpp"
+#include "engines/drives/Drive.hpp"
+
+namespace graindrive {
+
+class DrumDrive : public Drive<DrumDrive> {
+public:
+	static constexpr const char* class_name = "DrumDrive";
+	static const char* const documentation;
+	template <class Visit>
+	static void attributes(Visit&& visit)
+	{
+		visit("bodies", &DrumDrive::bodies, "ids of the bodies that turn");
+		visit("axisPoint", &DrumDrive::axisPoint, "a point on the axis [m]");
+		visit("angularVelocity", &DrumDrive::angularVelocity, "Omega along the axis [rad/s]");
+		visit("origins", &DrumDrive::origins, "positions at the start, from axisPoint [m]; taken at the first step");
+		common_attributes(visit);
+	}
+	void check() const;
+	void action() override;
+
+	std::vector<int> bodies;
+	Vector3r axisPoint = Vector3r::Zero(), angularVelocity = Vector3r::Zero();
+	std::vector<Vector3r> origins;
+
+private:
+	void take_origins();
+	Wrench move(std::size_t index, const Eigen::Matrix<Real, 3, 3>& turn);
+};
+
+}  // namespace graindrive

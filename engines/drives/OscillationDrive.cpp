@@ -1,0 +1,52 @@
+/// A body or clump oscillates along one axis.
+#include "engines/drives/OscillationDrive.hpp"
+
+namespace graindrive {
+
+const char* const OscillationDrive::documentation
+        = "Oscillates a body or clump along x, y or z; its other degrees of freedom stay as they are.\n\n"
+          "form='displacement': x(t) = x0 + A [sin(2 pi t/T + phi) - sin phi]\n"
+          "form='velocity':     v(t) = A sin(2 pi t/T + phi), x its integral\n\n"
+          "Both are readings of Tripura et al., whose text writes the velocity and uses the displacement. t starts at the drive's\n"
+          "first step. Place it after the contacts and before the integrator. Raises ValueError for a period <= 0, a negative or\n"
+          "non-finite amplitude, an unknown form, or a direction that is not an axis.";
+
+void OscillationDrive::check() const
+{
+	require(std::isfinite(amplitude) && amplitude >= 0, "OscillationDrive.amplitude must be finite and not negative", amplitude);
+	require(std::isfinite(period) && period > 0, "OscillationDrive.period must be positive", period);
+	require(std::isfinite(phase), "OscillationDrive.phase must be finite", phase);
+	require(form == "displacement" || form == "velocity", "OscillationDrive.form must be 'displacement' or 'velocity'", form);
+	axis();
+}
+
+/// Only an axis can be blocked in YADE's State while the directions across it stay free.
+int OscillationDrive::axis() const
+{
+	int index = -1, count = 0;
+	for (int i = 0; i < 3; ++i)
+		if (direction[i] != 0) index = i, ++count;
+	require(count == 1, "OscillationDrive.direction must be along x, y or z (only an axis leaves the others free)", direction.transpose());
+	return index;
+}
+
+Oscillation OscillationDrive::motion() const
+{
+	const bool by_displacement = form == "displacement";
+	const Real sign = direction[axis()] > 0 ? 1 : -1;
+	return { sign * amplitude, period, phase, by_displacement ? Oscillation::Form::displacement : Oscillation::Form::velocity };
+}
+
+void OscillationDrive::action()
+{
+	yade::State& state = driven_state();
+	const int along = axis();
+	if (begins()) origin = state.pos[along];
+	Vector3r velocity = Vector3r::Zero();
+	velocity[along] = (origin + motion().displacement(end_of_step()) - state.pos[along]) / scene->dt;
+	impose(state, yade::State::DOF_X << along, velocity, Vector3r::Zero());
+}
+
+}  // namespace graindrive
+
+BOOST_CLASS_EXPORT_GUID(graindrive::OscillationDrive, "OscillationDrive")

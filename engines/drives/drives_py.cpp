@@ -1,0 +1,15 @@
+/// Python bindings of the drives.
+#include "engines/drives/DrumDrive.hpp"
+#include "engines/drives/OscillationDrive.hpp"
+#include "engines/drives/SpinTranslateDrive.hpp"
+
+namespace graindrive {
+
+void bind_drives()
+{
+	seam::bind<OscillationDrive>(OscillationDrive::documentation);
+	seam::bind<SpinTranslateDrive>(SpinTranslateDrive::documentation);
+	seam::bind<DrumDrive>(DrumDrive::documentation);
+}
+
+}  // namespace graindrive

@@ -1,0 +1,63 @@
+/// A pure contact law as a `Law2_` functor of YADE's InteractionLoop.
+#pragma once
+#include "engines/laws/sphere_pair.hpp"
+#include "engines/seam/contact_phys.hpp"
+
+namespace graindrive {
+
+/// Base of the three functors: reads the pair from YADE, asks `Self::law(friction)`, and gives YADE the forces.
+///
+/// Velocities are YADE's leapfrog ones at n-1/2, positions at n, as in LAMMPS. Periodic cells may not deform (no velGrad).
+template <class Self>
+class ContactLaw : public Registered<Self, yade::LawFunctor> {
+public:
+	template <class Visit>
+	static void common_attributes(Visit&& visit)
+	{
+		visit("leverArm", &ContactLaw::leverArm, "where the tangential force acts: 'radius' (LAMMPS, the papers) or 'contactPoint'");
+	}
+	std::string get2DFunctorType1() const override { return "ScGeom"; }
+	std::string get2DFunctorType2() const override { return "FrictPhys"; }
+	void check() const
+	{
+		require(leverArm == "radius" || leverArm == "contactPoint", "leverArm must be 'radius' or 'contactPoint'", leverArm);
+		static_cast<const Self&>(*this).law(0);
+	}
+
+	bool go(yade::shared_ptr<yade::IGeom>& igeom, yade::shared_ptr<yade::IPhys>& iphys, yade::Interaction* interaction) override
+	{
+		const auto& geom = static_cast<const yade::ScGeom&>(*igeom);
+		if (geom.penetrationDepth < 0) return false;
+		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
+		if (!phys)
+			throw std::runtime_error(std::string(Self::class_name) + " needs contacts made by Ip2_FrictMat_FrictMat_ContactPhys; put it in the InteractionLoop");
+		apply(geom, *phys, interaction->getId1(), interaction->getId2());
+		return true;
+	}
+
+	std::string leverArm = "radius";
+
+private:
+	void apply(const yade::ScGeom& geom, ContactPhys& phys, int id1, int id2) const
+	{
+		yade::Scene& scene = *this->scene;
+		const yade::State& s1 = *(*scene.bodies)[id1]->state;
+		const yade::State& s2 = *(*scene.bodies)[id2]->state;
+		const laws::SpherePair pair { geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, s1.vel, s2.vel, s1.angVel, s2.angVel,
+			                          phys.effectiveRadius, phys.effectiveMass };
+		const auto arm = leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point;
+		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
+		const auto answer = laws::respond(law, pair, phys.slip, scene.dt, arm);
+		phys.normalForce = answer.normal_force2;
+		phys.shearForce = answer.tangential_force2;
+		phys.slip = answer.slip;
+		phys.slipping = answer.slipping;
+		const Vector3r force2 = answer.normal_force2 + answer.tangential_force2;
+		scene.forces.addForce(id1, -force2);
+		scene.forces.addForce(id2, force2);
+		scene.forces.addTorque(id1, answer.torque1);
+		scene.forces.addTorque(id2, answer.torque2);
+	}
+};
+
+}  // namespace graindrive

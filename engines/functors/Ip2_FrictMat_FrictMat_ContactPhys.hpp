@@ -1,0 +1,28 @@
+/// Makes a contact's reduced radius, reduced mass and friction from its two bodies.
+#pragma once
+#include "engines/seam/contact_phys.hpp"
+
+namespace graindrive {
+
+class Ip2_FrictMat_FrictMat_ContactPhys : public Registered<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor> {
+public:
+	static constexpr const char* class_name = "Ip2_FrictMat_FrictMat_ContactPhys";
+	static const char* const documentation;
+	template <class Visit>
+	static void attributes(Visit&& visit)
+	{
+		visit("friction", &Ip2_FrictMat_FrictMat_ContactPhys::friction,
+		      "friction coefficient of every contact [-]; negative: tan of the smaller FrictMat.frictionAngle");
+	}
+	std::string get2DFunctorType1() const override { return "FrictMat"; }
+	std::string get2DFunctorType2() const override { return "FrictMat"; }
+	void go(const yade::shared_ptr<yade::Material>& first, const yade::shared_ptr<yade::Material>& second,
+	        const yade::shared_ptr<yade::Interaction>& interaction) override;
+
+	Real friction = -1;
+
+private:
+	Real inverse_mass(int body) const;
+};
+
+}  // namespace graindrive

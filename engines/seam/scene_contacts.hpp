@@ -1,0 +1,32 @@
+/// Finds who knows the contacts of a scene, and answers for YADE's own loop.
+#pragma once
+#include "engines/base/contact_view.hpp"
+#include "engines/seam/yade.hpp"
+
+namespace graindrive {
+
+/// Contacts from YADE's interactions, forces from YADE's force container.
+class SceneContacts : public ContactSource {
+public:
+	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
+	Wrench wrench_on(int body) override;
+
+	/// The loop that answers for the scene: an engine of O.engines that is a ContactSource (GrainLoop), else this object.
+	ContactSource& of(yade::Scene* scene);
+
+	/// Ids that make up a body: its clump's members, or itself.
+	/// @throws std::runtime_error if there is no such body
+	const std::vector<int>& members_of(int body);
+
+private:
+	yade::Scene* scene_ = nullptr;
+	int body_ = -1;
+	std::size_t bodies_ = 0;
+	std::vector<int> members_;
+};
+
+/// The body of that id.
+/// @throws std::runtime_error naming `who` if it does not exist (any more)
+yade::Body& body_of(const yade::Scene& scene, int id, const std::string& who);
+
+}  // namespace graindrive
