@@ -6,6 +6,7 @@
 namespace graindrive {
 void bind_functors();
 void bind_drives();
+void bind_measures();
 }  // namespace graindrive
 
 BOOST_PYTHON_MODULE(_engines)
@@ -15,4 +16,5 @@ BOOST_PYTHON_MODULE(_engines)
 	graindrive::seam::prove_layout({});
 	graindrive::bind_functors();
 	graindrive::bind_drives();
+	graindrive::bind_measures();
 }
