@@ -1,0 +1,92 @@
+"""The packing cache: one build per key, damaged entries built anew, concurrent builders and read-only places."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from graindrive import cache
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+class Builder:
+    """Counts its calls; makes arrays of two kinds."""
+
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self):
+        self.calls += 1
+        return {"x": np.arange(1000) / 7, "id": np.arange(3)}
+
+
+def test_built_once_and_returned_bit_for_bit(folder):
+    build = Builder()
+    first = cache.cached("bed", {"seed": 1}, 1, build)
+    again = cache.cached("bed", {"seed": 1}, 1, build)
+    assert build.calls == 1 and set(again) == {"x", "id"}
+    assert all(np.array_equal(first[name], again[name]) and first[name].dtype == again[name].dtype for name in first)
+    assert [p.suffix for p in folder.iterdir()] == [".npz"]
+
+
+@pytest.mark.parametrize(
+    "kind, parameters, recipe", [("bed", {"seed": 2}, 1), ("bed", {"seed": 1}, 2), ("lid", {"seed": 1}, 1)]
+)
+def test_another_key_is_another_entry(kind, parameters, recipe):
+    build = Builder()
+    cache.cached("bed", {"seed": 1}, 1, build)
+    cache.cached(kind, parameters, recipe, build)
+    assert build.calls == 2
+
+
+def truncate(data):
+    return data[: len(data) // 2]
+
+
+def flip(data):
+    return data[:300] + bytes([data[300] ^ 255]) + data[301:]
+
+
+@pytest.mark.parametrize("damage", [truncate, flip, lambda data: b"", lambda data: b"not a zip file at all"])
+def test_a_damaged_entry_is_built_anew_with_a_note(folder, damage, capsys):
+    build = Builder()
+    cache.cached("bed", {}, 1, build)
+    (entry,) = folder.iterdir()
+    entry.write_bytes(damage(entry.read_bytes()))
+    assert np.array_equal(cache.cached("bed", {}, 1, build)["x"], np.arange(1000) / 7)
+    assert build.calls == 2 and "is damaged" in capsys.readouterr().err
+    cache.cached("bed", {}, 1, build)
+    assert build.calls == 2 and capsys.readouterr().err == ""
+
+
+def test_an_unwritable_cache_costs_a_note_not_the_run(tmp_path, monkeypatch, capsys):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path / "file"))
+    assert cache.cached("bed", {}, 1, Builder())["id"].sum() == 3
+    assert "cannot write cache" in capsys.readouterr().err
+
+
+def test_a_build_that_fails_leaves_nothing(folder):
+    with pytest.raises(ZeroDivisionError):
+        cache.cached("bed", {}, 1, lambda: 1 / 0)
+    assert not folder.exists()
+
+
+def test_builders_at_the_same_time_agree(folder):
+    code = "import numpy, graindrive.cache as c; print(c.cached('bed', {}, 1, lambda: {'x': numpy.ones(10**6)})['x'].sum())"
+    processes = [subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) for _ in range(4)]
+    assert [p.communicate()[0].strip() for p in processes] == ["1000000.0"] * 4
+    assert len(list(folder.iterdir())) == 1
+
+
+def test_the_folder_follows_the_environment(monkeypatch, tmp_path):
+    assert cache.cache_folder().name == "cache"
+    monkeypatch.delenv("GRAINDRIVE_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache.cache_folder() == tmp_path / "graindrive"
