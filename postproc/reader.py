@@ -1,0 +1,100 @@
+"""Open a run folder: parameters, provenance, time series, frames of the bed and the intruder, as NumPy arrays with units."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
+INTRUDER = -1  # in a contact's `i` or `j`
+
+
+class RunError(Exception):
+    """A folder cannot be read as a run; the message is one line that says why."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The bed at time `t` [sqrt(d/g)]: `grains` and `contacts` map names to 1D arrays, one entry per grain or contact."""
+
+    t: float
+    grains: dict
+    contacts: dict
+
+    @property
+    def role(self):
+        """Role of each grain, (N,) of GRAIN, BASE or BEAD; all GRAIN where the run did not store it."""
+        return self.grains.get("role", np.zeros(len(self.grains["x"]), dtype=int))
+
+    @property
+    def speed(self):
+        """Speed of each grain, (N,) [sqrt(g d)]."""
+        return np.hypot(self.grains["vx"], self.grains["vy"])
+
+
+class Run:
+    """A run folder, complete, interrupted or still growing; raises RunError if `path` is none of these.
+
+    `parameters` and `provenance` are dicts of plain values, `series` maps names to 1D arrays of one length, `units` the
+    names of series and parameters to their units, `summary` is the content of summary.json. A folder that is still
+    being written shows its series and parameters, but no frames.
+    """
+
+    def __init__(self, path):
+        self.path = Path(path)
+        try:
+            with h5py.File(self.path / "run.h5", "r", libver="latest", swmr=True) as file:
+                self.series = read_series(file.get("series", {}))
+                self.units = {name: dataset.attrs.get("unit", "-") for name, dataset in file.get("series", {}).items()}
+            about = self.path / ("about.h5" if (self.path / "about.h5").exists() else "run.h5")
+            with h5py.File(about, "r") as file:
+                self.study, self.state = str(file.attrs["study"]), str(file.attrs["state"])
+                self.parameters = {name: plain(dataset[()]) for name, dataset in file["parameters"].items()}
+                self.units.update({name: dataset.attrs["unit"] for name, dataset in file["parameters"].items()})
+                self.provenance = {name: plain(value) for name, value in file["provenance"].attrs.items()}
+                self.frame_names = sorted(file.get("frames", {}), key=int)
+        except FileNotFoundError:
+            raise RunError(f"{path} is not a run folder: it holds no run.h5") from None
+        except (OSError, KeyError) as error:
+            raise RunError(f"{path} cannot be read as a run: {' '.join(str(error).split())}") from None
+
+    @property
+    def summary(self):
+        """Content of summary.json as a dict; empty for a run that did not end well."""
+        file = self.path / "summary.json"
+        return json.loads(file.read_text()) if file.exists() else {}
+
+    def frame(self, number=-1):
+        """Return the `Frame` with this place in the order of time; -1 is the last. Raises RunError if there is none."""
+        if not -len(self.frame_names) <= number < len(self.frame_names):
+            raise RunError(f"{self.path} holds {len(self.frame_names)} frames; there is no frame {number}")
+        with h5py.File(self.path / "run.h5", "r") as file:
+            group = file["frames"][self.frame_names[number]]
+            contacts = {name: dataset[()] for name, dataset in group.get("contacts", {}).items()}
+            grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
+            return Frame(float(group.attrs["t"]), grains, contacts)
+
+    def group(self, name):
+        """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
+        with h5py.File(self.path / "run.h5", "r") as file:
+            return {
+                key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
+            }
+
+    def at(self, t, *names):
+        """Return the named series at time `t`, interpolated linearly."""
+        return [float(np.interp(t, self.series["t"], self.series[name])) for name in names]
+
+
+def read_series(group):
+    """Return {name: 1D array} of an HDF5 group, all as long as the shortest (a run may have died between two)."""
+    rows = min([len(dataset) for dataset in group.values()], default=0)
+    return {name: dataset[:rows] for name, dataset in group.items()}
+
+
+def plain(value):
+    """Return an HDF5 scalar as Python's number or text."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return value.decode() if isinstance(value, bytes) else value

@@ -1,0 +1,117 @@
+"""Standard errors against processes whose error is known, and the drift of shaken bodies whose motion is known."""
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies as st
+
+from graindrive.postproc.statistics import block_mean, chi_squared_99, cycle_means, drift
+
+
+def autoregressive(n, correlation, rng):
+    """AR(1) of unit variance; the variance of its mean is (1 + φ)/(1 − φ)/n for n much larger than 1/(1 − φ)."""
+    noise = rng.normal(size=n) * np.sqrt(1 - correlation**2)
+    x = np.empty(n)
+    x[0] = rng.normal()
+    for i in range(1, n):
+        x[i] = correlation * x[i - 1] + noise[i]
+    return x
+
+
+@pytest.mark.parametrize("time", [0, 1, 5, 30])
+def test_error_of_a_process_with_known_correlation_time(time):
+    """Blocks of ~10 correlation times leave 2^15/(10·30) ≈ 100 blocks: 7 % each, below 10 % in the mean of 40, plus the bias."""
+    rng, n, correlation = np.random.default_rng(1), 2**15, np.exp(-1 / time) if time else 0.0
+    true = np.sqrt((1 + correlation) / (1 - correlation) / n)
+    means = [block_mean(autoregressive(n, correlation, rng)) for _ in range(40)]
+    assert np.sqrt(np.mean([m.error**2 for m in means])) == pytest.approx(true, rel=0.1)
+    assert np.mean([m.resolved for m in means]) > 0.9
+    assert np.std([m.value for m in means]) == pytest.approx(
+        true, rel=0.4
+    ), "40 means scatter as the error says, to 3 σ"
+    if time:
+        assert np.median([m.block_length for m in means]) >= time
+
+
+def test_white_noise_is_taken_as_it_is():
+    x = np.random.default_rng(2).normal(3, 2, 1000)
+    mean = block_mean(x)
+    assert mean.block_length == 1 and mean.error == pytest.approx(x.std() / np.sqrt(999))
+
+
+def test_a_random_walk_is_not_resolved():
+    """Its correlation time is the series itself: no block length can do."""
+    walks = np.cumsum(np.random.default_rng(3).normal(size=(20, 256)), axis=1)
+    assert sum(not block_mean(walk).resolved for walk in walks) >= 10
+
+
+@pytest.mark.parametrize("samples, error", [([1.0], np.nan), ([2.0, 2.0], 0.0), (np.full(1000, 0.1), 0.0)])
+def test_short_and_constant_series(samples, error):
+    mean = block_mean(samples)
+    assert mean.value == pytest.approx(samples[0]) and (mean.error == error or np.isnan(mean.error) and np.isnan(error))
+
+
+@pytest.mark.parametrize("samples", [[], [np.nan, 1], [np.inf], [[1, 2]]])
+def test_what_has_no_mean_is_refused(samples):
+    with pytest.raises(ValueError, match="samples must be"):
+        block_mean(samples)
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=200), st.floats(-1e3, 1e3), st.sampled_from([0.5, 2.0, 4.0]))
+def test_mean_and_error_shift_and_scale(samples, shift, scale):
+    x = np.array(samples)
+    mean = block_mean(x)
+    scaled = block_mean(x * scale)
+    assert scaled.error == mean.error * scale and scaled.value == mean.value * scale, "powers of two scale exactly"
+    assert block_mean(x + shift).value == pytest.approx(mean.value + shift, abs=1e-6)
+
+
+def test_quantiles_of_chi_squared():
+    table = {1: 6.635, 2: 9.210, 5: 15.086, 10: 23.209, 20: 37.566}
+    assert [chi_squared_99(np.array([k]))[0] for k in table] == pytest.approx(list(table.values()), rel=0.02)
+
+
+def shaken(rate, period=4.0, end=400.0, points=4001, noise=0.0):
+    t = np.linspace(0, end, points)
+    return t, rate * t + 0.3 * np.sin(2 * np.pi * t / period) + noise * np.random.default_rng(4).normal(size=points)
+
+
+def test_cycle_means_of_a_line_are_its_middles():
+    t, y = shaken(0.01)
+    cycle_t, cycle_y = cycle_means(t, y, 4.0)
+    assert len(cycle_t) == 100 and np.allclose(cycle_t, 2 + 4 * np.arange(100))
+    assert np.allclose(cycle_y, 0.01 * cycle_t, atol=1e-12), "the sine has no mean over its period"
+
+
+def test_cycle_means_do_not_need_the_period_to_be_a_multiple_of_the_sampling():
+    t, y = shaken(0.02, period=3.7, points=4117)
+    _, cycle_y = cycle_means(t, y, 3.7)
+    assert np.allclose(np.diff(cycle_y) / 3.7, 0.02, atol=1e-4)
+
+
+@pytest.mark.parametrize("rate", [-0.03, 0.0, 0.02])
+def test_drift_of_a_steady_riser(rate):
+    found = drift(*shaken(rate), 4.0)
+    assert found.rate == pytest.approx(rate, abs=1e-9) and found.error < 1e-9
+    assert found.start == pytest.approx(42) and found.end == pytest.approx(398)
+
+
+def test_drift_lies_within_its_error_for_a_random_ratchet():
+    """Steps of 0.1 ± 0.5 per cycle, independent: the error of 450 of them is 0.5/sqrt(450)/T."""
+    rng, inside = np.random.default_rng(5), 0
+    for _ in range(40):
+        position = np.repeat(np.cumsum(rng.normal(0.1, 0.5, 500)), 20)
+        found = drift(np.arange(10000) * 0.2, position, 4.0)
+        assert found.error == pytest.approx(0.5 / np.sqrt(450) / 4, rel=0.5)
+        inside += abs(found.rate - 0.025) < 2 * found.error
+    assert inside >= 32, "95 % of 40 are 38; fewer than 32 happen once in 10^5"
+
+
+def test_drift_ends_where_the_body_rests():
+    t = np.linspace(0, 400, 4001)
+    found = drift(t, np.minimum(0.1 * t, 20.0), 4.0)
+    assert found.rate == pytest.approx(0.1, rel=0.03) and 196 <= found.end <= 208
+
+
+@pytest.mark.parametrize("t, y", [([], []), ([0.0], [1.0]), (np.linspace(0, 7, 50), np.zeros(50))])
+def test_too_short_for_a_drift(t, y):
+    assert np.isnan(drift(t, y, 4.0).rate)
