@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <sstream>
@@ -68,15 +69,31 @@ public:
 		contact();
 		scene();
 		virtual_functions();
+		every_damage_was_done();
 		return facts_;
 	}
+
+	/// What `damage` may name, in the order of the proof.
+	const std::vector<string>& members() const { return members_; }
 
 private:
 	py::object make(const char* cls) const { return yade_.attr(cls)(); }
 
-	std::size_t declared(const string& member, std::size_t offset) const
+	std::size_t declared(const string& member, std::size_t offset)
 	{
+		members_.push_back(member);
 		return offset + py::extract<int>(damage_.get(member, 0));
+	}
+
+	/// A misspelt name would let the test of the proof pass for nothing.
+	void every_damage_was_done() const
+	{
+		const py::list names = damage_.keys();
+		for (long i = 0; i < py::len(names); ++i) {
+			const string name = py::extract<string>(names[i]);
+			if (std::find(members_.begin(), members_.end(), name) == members_.end())
+				throw std::invalid_argument("damage names '" + name + "', which the proof does not look at; proven_members() lists what it does");
+		}
 	}
 
 	/// The declared place of a member must hold these bytes; where it does not, say where they are.
@@ -118,6 +135,11 @@ private:
 	{
 		const Integer value = static_cast<Integer>(0x11223300 + ++sentinel_);
 		attribute(cls, name, object, offset, py::object(value), value);
+	}
+	/// Both values, for a single byte is easily right by chance.
+	void boolean(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	{
+		for (const bool value : { false, true }) attribute(cls, name, object, offset, py::object(value), value);
 	}
 	void pointer(const string& member, const py::object& object, std::size_t offset, const py::object& target)
 	{
@@ -166,7 +188,7 @@ private:
 	{
 		py::object engine = make("Engine");
 		integer<int>("Engine", "ompThreads", engine, offsetof(yade::Engine, ompThreads));
-		attribute("Engine", "dead", engine, offsetof(yade::Engine, dead), py::object(true), true);
+		boolean("Engine", "dead", engine, offsetof(yade::Engine, dead));
 		label("Engine", offsetof(yade::Engine, label));
 		pointer("Engine.scene", engine, offsetof(yade::Engine, scene), py::import("yade").attr("O").attr("_sceneObj"));
 		label("LawFunctor", offsetof(yade::LawFunctor, label));
@@ -225,6 +247,7 @@ private:
 		integer<int>("Interaction", "id1", contact, offsetof(yade::Interaction, id1));
 		integer<int>("Interaction", "id2", contact, offsetof(yade::Interaction, id2));
 #endif
+		boolean("Interaction", "isActive", contact, offsetof(yade::Interaction, isActive));
 		integer<long>("Interaction", "iterMadeReal", contact, offsetof(yade::Interaction, iterMadeReal));
 		contact.attr("geom") = geom;
 		contact.attr("phys") = phys;
@@ -255,7 +278,7 @@ private:
 		integer<long>("Scene", "iter", scene, offsetof(yade::Scene, iter));
 		integer<long>("Scene", "stopAtIter", scene, offsetof(yade::Scene, stopAtIter));
 		integer<int>("Scene", "subStep", scene, offsetof(yade::Scene, subStep));
-		attribute("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic), py::object(true), true);
+		boolean("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic));
 		points_to("Scene.bodies", scene, offsetof(yade::Scene, bodies), "vtable for yade::BodyContainer");
 		points_to("Scene.interactions", scene, offsetof(yade::Scene, interactions), "vtable for yade::InteractionContainer");
 		engine_list();
@@ -343,6 +366,7 @@ private:
 	py::dict damage_;
 	py::object yade_, eigen_;
 	MemoryProbe probe_;
+	std::vector<string> members_;
 	int facts_ = 0;
 	int sentinel_ = 0;
 };
@@ -351,12 +375,28 @@ private:
 
 int prove_layout(const py::dict& damage) { return Proof(damage).run(); }
 
+namespace {
+
+py::list proven_members()
+{
+	Proof proof({});
+	proof.run();
+	py::list names;
+	for (const string& member : proof.members())
+		if (!names.contains(member)) names.append(member);
+	return names;
+}
+
+}  // namespace
+
 void bind_layout()
 {
 	py::def("prove_layout", prove_layout, (py::arg("damage") = py::dict()),
 	        "Prove that YADE's classes lie in memory as Graindrive's engines expect.\n\n"
 	        "damage: {'State.vel': 8} shifts a declared offset by bytes (for the test that the proof can fail).\n"
-	        "Returns the number of facts proven. Raises ImportError naming class, member, expected and found.");
+	        "Returns the number of facts proven. Raises ImportError naming class, member, expected and found, ValueError for a name\n"
+	        "that the proof does not look at.");
+	py::def("proven_members", proven_members, "The names that prove_layout's damage may have: members as 'Class.member', sizes as 'Class.size'.");
 }
 
 }  // namespace graindrive::seam

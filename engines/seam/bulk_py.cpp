@@ -1,0 +1,90 @@
+/// Bodies and contacts of a scene as NumPy arrays, without a Python loop.
+#include <boost/python/numpy.hpp>
+
+#include "engines/seam/contact_phys.hpp"
+
+namespace graindrive {
+namespace {
+
+namespace py = boost::python;
+namespace np = boost::python::numpy;
+
+template <class T>
+np::ndarray column(const std::vector<T>& values, int width = 1)
+{
+	const long rows = long(values.size()) / width;
+	np::ndarray array = width > 1 ? np::zeros(py::make_tuple(rows, width), np::dtype::get_builtin<T>())
+	                              : np::zeros(py::make_tuple(rows), np::dtype::get_builtin<T>());
+	std::copy(values.begin(), values.end(), reinterpret_cast<T*>(array.get_data()));
+	return array;
+}
+
+void append(std::vector<Real>& rows, const Vector3r& v) { rows.insert(rows.end(), v.data(), v.data() + 3); }
+
+/// Spheres only (a clump is seen through its members), in the order of their ids.
+py::dict bodies(const yade::Scene& scene)
+{
+	std::vector<int> id, clump;
+	std::vector<Real> position, velocity, spin, radius, mass;
+	for (std::size_t i = 0; i < scene.bodies->size(); ++i) {
+		if (!scene.bodies->exists(int(i))) continue;
+		const yade::Body& body = *(*scene.bodies)[i];
+		const auto* sphere = dynamic_cast<const yade::Sphere*>(body.shape.get());
+		if (!sphere) continue;
+		id.push_back(int(i));
+		clump.push_back(body.clumpId);
+		radius.push_back(sphere->radius);
+		mass.push_back(body.state->mass);
+		append(position, body.state->pos);
+		append(velocity, body.state->vel);
+		append(spin, body.state->angVel);
+	}
+	py::dict table;
+	table["id"] = column(id), table["clump"] = column(clump), table["radius"] = column(radius), table["mass"] = column(mass);
+	table["position"] = column(position, 3), table["velocity"] = column(velocity, 3), table["spin"] = column(spin, 3);
+	return table;
+}
+
+py::dict contacts(const yade::Scene& scene)
+{
+	std::vector<int> i, j, slipping;
+	std::vector<Real> point, normal, normal_force, tangential_force, overlap;
+	for (std::size_t id = 0; id < scene.bodies->size(); ++id) {
+		if (!scene.bodies->exists(int(id))) continue;
+		for (const auto& [partner, interaction] : (*scene.bodies)[id]->intrs) {
+			if (interaction->getId1() != int(id) || !interaction->isReal()) continue; // each contact once, from its first body
+			const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
+			const auto* phys = dynamic_cast<const yade::FrictPhys*>(interaction->phys.get());
+			if (!geom || !phys) continue;
+			const auto* ours = dynamic_cast<const ContactPhys*>(phys);
+			i.push_back(interaction->getId1());
+			j.push_back(interaction->getId2());
+			slipping.push_back(ours ? ours->slipping : 0);
+			overlap.push_back(geom->penetrationDepth);
+			append(point, geom->contactPoint);
+			append(normal, geom->normal);
+			append(normal_force, phys->normalForce);
+			append(tangential_force, phys->shearForce);
+		}
+	}
+	py::dict table;
+	table["i"] = column(i), table["j"] = column(j), table["slipping"] = column(slipping), table["overlap"] = column(overlap);
+	table["point"] = column(point, 3), table["normal"] = column(normal, 3);
+	table["normal_force"] = column(normal_force, 3), table["tangential_force"] = column(tangential_force, 3);
+	return table;
+}
+
+}  // namespace
+
+void bind_bulk()
+{
+	np::initialize();
+	py::def("body_table", bodies, (py::arg("scene")),
+	        "Spheres of a scene (O._sceneObj) as arrays: id, clump, radius [m], mass [kg], shape (n,); position [m], velocity [m/s],\n"
+	        "spin [rad/s], shape (n, 3). A clump appears through its members.");
+	py::def("contact_table", contacts, (py::arg("scene")),
+	        "Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic image),\n"
+	        "normal from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
+}
+
+}  // namespace graindrive

@@ -1,0 +1,25 @@
+"""Every engine, functor and function of the compiled module, with YADE found wherever Debian keeps it."""
+
+import glob
+import sys
+
+
+def find_yade():
+    """Put Debian's YADE on the path for a plain `/usr/bin/python3` (the `yade` program has done so already)."""
+    if "yade" in sys.modules:
+        return
+    for folder in glob.glob("/usr/lib/*/yade-double/py"):
+        if folder not in sys.path:
+            sys.path.append(folder)
+    try:
+        import yade  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise ImportError(
+            f"cannot import YADE ({error}); install Debian's package yade and use /usr/bin/python3"
+        ) from None
+
+
+find_yade()
+
+from ._engines import *  # noqa: E402, F401, F403
+from ._engines import prove_layout  # noqa: E402, F401

@@ -1,0 +1,142 @@
+"""Beds of disks around a held intruder: random insertion, settling under gravity, and the cache that keeps them."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from . import cache, engines, progress, scene
+from .errors import UsageError
+from .material import HertzHistoryMaterial
+
+RECIPE = 1  # raise it when a bed of the same parameters comes out different
+INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
+BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
+
+
+@dataclass(frozen=True)
+class BedRecipe:
+    """A bed of disks on a base of disks of diameter 1 at y = 0, periodic in x, around a held clump.
+
+    Lengths in grain diameters d, times in sqrt(d/g), masses in rho d^2. `beads` are rows x, y of the held clump's bead
+    centres, `outline` rows x, y of its corners; both in the scene. `rest` is the kinetic energy per grain, in m g d, at which the bed counts as settled.
+    """
+
+    width: float
+    height: float
+    d_min: float
+    d_max: float
+    material: HertzHistoryMaterial
+    beads: tuple
+    bead_radius: float
+    outline: tuple
+    outline_area: float
+    dt: float
+    rest: float
+    seed: int
+
+
+def settled_bed(recipe):
+    """Return a settled bed as a dict: x, y, r of its grains, shape (n,), kinetic energy per grain, deepest overlap.
+
+    The same recipe gives the same bed; it is taken from the cache when it is there.
+    """
+    return cache.cached("bed", as_plain(recipe), RECIPE, lambda: settle(recipe))
+
+
+def as_plain(recipe):
+    """Return a recipe as a dict of numbers and lists, for the cache's key."""
+    plain = asdict(recipe)
+    for name in ("beads", "outline"):
+        plain[name] = [list(map(float, row)) for row in plain[name]]
+    return plain
+
+
+def insert(recipe):
+    """Place the bed's grains at random above the base and around the intruder; return x, y, r."""
+    mean_area = np.pi / 12 * (recipe.d_max**2 + recipe.d_max * recipe.d_min + recipe.d_min**2)
+    count = int((BED_FRACTION * recipe.width * recipe.height - recipe.outline_area) / mean_area)
+    if count < 1:
+        raise UsageError(
+            f"a bed {recipe.width} d wide and {recipe.height} d high has no room for grains; make it larger"
+        )
+    radii = engines.uniform_radii(count, recipe.d_min, recipe.d_max, recipe.seed)
+    filled = np.sum(np.pi * radii**2) / INSERTION_FRACTION + recipe.outline_area
+    box = (0.0, recipe.width, 0.5, 0.5 + filled / recipe.width)
+    obstacles = keep_clear(recipe)
+    centres = engines.random_insertion(box, True, radii, obstacles, recipe.seed)
+    return centres[:, 0], centres[:, 1], radii
+
+
+def keep_clear(recipe):
+    """Return rows x, y, radius of disks that cover the intruder, so that no grain is put inside its ring of beads."""
+    from matplotlib.path import Path
+
+    beads, outline = np.array(recipe.beads), np.array(recipe.outline)
+    step = recipe.d_min / 4
+    (x0, y0), (x1, y1) = outline.min(axis=0), outline.max(axis=0)
+    grid = np.stack(np.meshgrid(np.arange(x0, x1, step), np.arange(y0, y1, step)), axis=-1).reshape(-1, 2)
+    inside = grid[Path(outline).contains_points(grid, radius=-1e-9)]
+    inside = inside[distance_to(outline, inside) > step]
+    rows = [np.c_[beads, np.full(len(beads), recipe.bead_radius)], np.c_[inside, np.full(len(inside), step)]]
+    return np.concatenate(rows)
+
+
+def distance_to(outline, points):
+    """Return the distance of points (n, 2) to the closed polygon `outline` (m, 2), shape (n,)."""
+    best = np.full(len(points), np.inf)
+    for a, b in zip(outline, np.roll(outline, -1, axis=0)):
+        along = np.clip((points - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0, 1)
+        best = np.minimum(best, np.hypot(*(points - a - along[:, None] * (b - a)).T))
+    return best
+
+
+def settle(recipe):
+    """Insert the grains and let them fall until they rest; return the bed's arrays."""
+    x, y, r = insert(recipe)
+    scene.start(recipe.width, float(y.max()) + 2)
+    scene.add_base(recipe.width, 1.0, recipe.material.density)
+    beads = np.array(recipe.beads)
+    scene.add_disks(
+        beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ"
+    )
+    ids = scene.add_disks(x, y, r, recipe.material.density)
+    scene.yade_loop(recipe.material, gravity=1.0)
+    scene.set_time_step(recipe.dt, recipe.material, recipe.d_min / 2)
+    energy = run_until_at_rest(recipe, ids, fall_time=np.sqrt(2 * float(y.max())))
+    bed = scene.grains(ids)
+    box = (0.0, recipe.width, -1.0, float(bed["y"].max()) + 1)
+    deepest, i, j = engines.overlaps(box, True, np.c_[bed["x"] % recipe.width, bed["y"]], bed["r"])
+    if deepest > 0.1:
+        raise RuntimeError(
+            f"grains {i} and {j} of the settled bed overlap by {deepest:.2g} of a radius; lower the time step"
+        )
+    return {**{name: bed[name] for name in ("x", "y", "r")}, "kinetic_energy": energy, "deepest_overlap": deepest}
+
+
+def run_until_at_rest(recipe, ids, fall_time):
+    """Run in blocks of a time unit until the kinetic energy per grain is below `rest` m g d; return that energy.
+
+    It is not asked before the highest grain could have fallen. A bed that does not come to rest in 50 times as long
+    raises RuntimeError: its energy input (a time step too long, grains inside the intruder) has to be found.
+    """
+    from yade import O
+
+    block = max(1, round(1 / O.dt))
+    energy = np.inf
+
+    def at_rest(done):
+        nonlocal energy
+        energy = kinetic_energy_per_grain(scene.grains(ids), recipe.material.density)
+        return energy < recipe.rest and done * O.dt > fall_time
+
+    progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling the bed")
+    if not energy < recipe.rest:
+        raise RuntimeError(f"the bed keeps a kinetic energy of {energy:.2g} m g d per grain, over {recipe.rest:.2g}")
+    return energy
+
+
+def kinetic_energy_per_grain(grains, density):
+    """Return the mean kinetic energy, translation and rotation, over the mean m g d of the grains (g = d = 1)."""
+    mass = density * np.pi * grains["r"] ** 2
+    energy = mass / 2 * (grains["vx"] ** 2 + grains["vy"] ** 2 + grains["r"] ** 2 / 2 * grains["spin"] ** 2)
+    return float(energy.mean() / mass.mean())

@@ -1,0 +1,118 @@
+"""Two-dimensional scenes of disks in YADE: grains, a frozen base, a clump of beads, and the loop that moves them."""
+
+import math
+
+import numpy as np
+
+from . import engines
+from .errors import UsageError
+
+IN_PLANE = "zXY"  # degrees of freedom that a two-dimensional scene blocks
+
+
+def start(width, height):
+    """Empty YADE's scene and make it periodic in x with period `width`; y has room for `height` and a margin.
+
+    YADE knows cells that are periodic in all directions only: y is made so long that nothing meets its image.
+    """
+    from yade import O
+
+    O.reset()
+    O.periodic = True
+    O.cell.setBox(width, 2 * height + 20, 10)
+
+
+def disk(x, y, radius, density, blocked=IN_PLANE):
+    """Return a YADE body for a disk: mass rho pi r^2, inertia m r^2/2 (YADE's own would be a sphere's)."""
+    from yade import utils
+    from yade.minieigenHP import Vector3
+
+    body = utils.sphere((float(x), float(y), 0), float(radius))
+    body.state.mass = density * math.pi * radius**2
+    body.state.inertia = Vector3(1, 1, 1) * (body.state.mass * radius**2 / 2)
+    body.state.blockedDOFs = blocked
+    return body
+
+
+def add_disks(x, y, radii, density, blocked=IN_PLANE):
+    """Add disks and return their ids; arrays of shape (n,) in length, density in mass/length^2."""
+    from yade import O
+
+    return O.bodies.append([disk(*row, density, blocked) for row in zip(x, y, radii)])
+
+
+def add_base(width, diameter, density):
+    """Add a row of frozen disks at y = 0 that joins itself across the periodic side; return their ids."""
+    count = max(1, round(width / diameter))
+    x = (np.arange(count) + 0.5) * width / count
+    return add_disks(x, np.zeros(count), np.full(count, diameter / 2), density, "xyzXYZ")
+
+
+def add_intruder(clump, x, y, blocked="xyzXYZ"):
+    """Add a clump of beads (from `engines.clump_of`) with its solid's centroid at (x, y); return the clump's id.
+
+    It gets the mass and inertia that were asked for, whatever its beads weigh.
+    """
+    from yade import O
+    from yade.minieigenHP import Vector3
+
+    beads = [disk(x + bx, y + by, clump.bead_radius, 1.0) for bx, by in clump.beads]
+    id_, _ = O.bodies.appendClumped(beads)
+    state = O.bodies[id_].state
+    state.mass = clump.mass
+    state.inertia = Vector3(1, 1, 1) * clump.inertia
+    state.blockedDOFs = blocked
+    return id_
+
+
+def yade_loop(material, gravity, between=(), damping=0.0):
+    """Put YADE's own loop with our law into O.engines; `between` stands after the contacts, before the integrator."""
+    from yade import O
+    from yade import wrapper as w
+
+    law = engines.Law2_ScGeom_ContactPhys_HertzHistory(
+        normalStiffness=material.normal_stiffness,
+        tangentialStiffness=material.tangential_stiffness,
+        normalDamping=material.normal_damping,
+        tangentialDamping=material.tangential_damping,
+    )
+    phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=material.friction)
+    O.engines = [
+        w.ForceResetter(),
+        w.InsertionSortCollider([w.Bo1_Sphere_Aabb()]),
+        w.InteractionLoop([w.Ig2_Sphere_Sphere_ScGeom()], [phys], [law]),
+        *between,
+        w.NewtonIntegrator(damping=damping, gravity=(0, -gravity, 0)),
+    ]
+
+
+def set_time_step(dt, material, smallest_radius):
+    """Set O.dt and return dt/dt_crit; UsageError if it is over 1."""
+    from yade import O
+
+    critical = material.critical_time_step(smallest_radius)
+    if dt > critical:
+        raise UsageError(
+            f"time step {dt:.3g} is over the critical {critical:.3g} of two touching smallest grains;"
+            " lower dt_factor to less than "
+            f"{critical / dt:.2g} times its value"
+        )
+    O.dt = dt
+    return dt / critical
+
+
+def grains(ids):
+    """Return x, y, radius, vx, vy, spin of the bodies `ids`, a dict of arrays of shape (n,)."""
+    from yade import O
+
+    table = engines.body_table(O._sceneObj)
+    rows = np.searchsorted(table["id"], ids)
+    position, velocity = table["position"][rows], table["velocity"][rows]
+    return {
+        "x": position[:, 0],
+        "y": position[:, 1],
+        "r": table["radius"][rows],
+        "vx": velocity[:, 0],
+        "vy": velocity[:, 1],
+        "spin": table["spin"][rows, 2],
+    }

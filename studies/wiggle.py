@@ -1,0 +1,213 @@
+"""Wiggle: a body shaken sideways in a bed of disks rises or sinks.
+
+System of Tripura, Kumar, Anyam, Reddy, "The rise and sink dependence on the shape of a horizontally wiggling intruder".
+A clump of beads along the outline of a shape lies in a settled bed under gravity. Its x is imposed,
+x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d, density rho, gravity g.
+
+Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
+velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
+
+Cost: the paper's size is 63,000 disks and 1e7 steps; the demo about 1e3 disks and 2e4 steps, two minutes on YADE's loop.
+
+    scripts/run wiggle_triangle                     the demo
+    yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
+    scripts/run wiggle help                         all keys
+"""
+
+import os
+import sys
+from typing import Literal
+
+sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
+
+import house  # noqa: E402, F401
+
+import numpy as np  # noqa: E402
+
+from graindrive import engines, headless, packing, progress, scene  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
+from graindrive.material import HertzHistoryMaterial  # noqa: E402
+from graindrive.parameters import StudyParameters, quantity  # noqa: E402
+from graindrive.postproc import wiggle as results  # noqa: E402
+
+# Parameters -----------------------------------------------------------------------------------------------------------
+
+TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
+SAMPLES_PER_PERIOD = 40
+
+
+class WiggleParameters(StudyParameters):
+    """What the wiggle study knows, in units of d, rho, g."""
+
+    shape: str = quantity("triangle", "-", "disk, square, tall, wide, triangle (OS1 to OS5), or a file of vertices: .wkt, .csv")
+    amplitude: float = quantity(3.0, "d", "A of the displacement; of the velocity [sqrt(d g)] with drive=velocity", ge=0)
+    period: float = quantity(4.0, "sqrt(d/g)", "T of the oscillation", gt=0)
+    drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "which of the two is A sin(2 pi t/T)")
+    mu: float = quantity(0.1, "-", "friction coefficient", ge=0)
+    width: float = quantity(300.0, "d", "period of the bed in x", gt=0)
+    height: float = quantity(195.0, "d", "height of the bed", gt=0)
+    depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
+    time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
+    frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1)
+    rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
+    bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
+    intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
+
+
+PRESETS = {
+    "smoke": dict(width=26, height=18, depth=8, time=2, period=1, frames=2, dt_factor=5, rest=0.05),
+    "demo": dict(width=32, height=30, depth=14, time=10, period=1, dt_factor=5, rest=2e-3),
+    "paper": {},
+}
+
+# Scene ----------------------------------------------------------------------------------------------------------------
+
+
+def material(p):
+    """The paper's grains, Table of section 2: K_n, K_t in rho d g, gamma in sqrt(g/d^3)."""
+    return HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, p.mu, 1.0)
+
+
+def intruder(p):
+    """Return the outline about its centroid, shape (m, 2), and the clump of beads inside it."""
+    try:
+        is_file = p.shape.endswith((".wkt", ".csv"))
+        outline = engines.read_outline(p.shape) if is_file else engines.outline_of(p.shape)
+        clump = engines.clump_of(outline, p.bead_diameter, p.intruder_mass)
+    except ValueError as error:
+        raise UsageError(f"shape={p.shape}: {error}") from None
+    return outline, clump
+
+
+def check_room(p, outline):
+    """The body must fit into the bed with its whole motion."""
+    centred = outline.vertices - np.array(outline.centroid)
+    (left, bottom), (right, top) = centred.min(axis=0), centred.max(axis=0)
+    swing = p.amplitude if p.drive == "displacement" else p.amplitude * p.period / (2 * np.pi)
+    needed = right - left + 2 * swing + 4
+    if needed > p.width:
+        raise UsageError(f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d; raise width or lower amplitude")
+    if p.height - p.depth + bottom < 1:
+        raise UsageError(f"height={p.height:g} d and depth={p.depth:g} d put the body into the base; raise height or lower depth")
+    if p.depth < top:
+        raise UsageError(f"depth={p.depth:g} d lets the body stick out of the bed by {top - p.depth:g} d; raise depth")
+    return centred
+
+
+def make_bed(p, outline_vertices, clump, at, dt, grains):
+    """Return the settled bed around the held body, from the cache or by pouring it."""
+    return packing.settled_bed(
+        packing.BedRecipe(
+            width=p.width,
+            height=p.height,
+            d_min=0.9,
+            d_max=1.1,
+            material=grains,
+            beads=tuple(map(tuple, clump.beads + at)),
+            bead_radius=clump.bead_radius,
+            outline=tuple(map(tuple, outline_vertices + at)),
+            outline_area=polygon_area(outline_vertices),
+            dt=dt,
+            rest=p.rest,
+            seed=p.seed,
+        )
+    )
+
+
+def polygon_area(vertices):
+    """Area of a closed polygon, vertices (m, 2), by the shoelace formula."""
+    x, y = vertices.T
+    return abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+
+
+# Drive, Measure, Run --------------------------------------------------------------------------------------------------
+
+
+def run(p, folder):
+    """Make the bed, shake the body, record its way."""
+    grains, dt = material(p), TIME_STEP * p.dt_factor
+    outline, clump = intruder(p)
+    vertices = check_room(p, outline)
+    at = np.array([p.width / 2, p.height - p.depth])
+    if dt > grains.critical_time_step(0.45):
+        scene.set_time_step(dt, grains, 0.45)
+    bed = make_bed(p, vertices, clump, at, dt, grains)
+
+    scene.start(p.width, float(bed["y"].max()) + 2 * p.amplitude + 10)
+    scene.add_base(p.width, 1.0, grains.density)
+    ids = scene.add_disks(bed["x"], bed["y"], bed["r"], grains.density)
+    body = scene.add_intruder(clump, *at, blocked="xzXYZ")
+    drive = engines.OscillationDrive(body=body, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
+    binner = engines.ContactForceBinner(body=body, label="binner")
+    scene.yade_loop(grains, gravity=1.0, between=[binner, drive])
+    ratio = scene.set_time_step(dt, grains, 0.45)
+
+    record(p, folder, ids, body, clump, vertices, drive, binner, ratio)
+
+
+def record(p, folder, ids, body, clump, vertices, drive, binner, ratio):
+    """Run in blocks, a fortieth of a period each, and keep series and frames."""
+    from yade import O
+
+    print(f"{len(ids)} grains, dt = {O.dt:.3g} sqrt(d/g), dt/dt_crit = {ratio:.3g}", file=sys.stderr)
+    folder.note(dt=O.dt, dt_over_critical=ratio, n_grains=len(ids))
+    folder.declare_series(
+        t="sqrt(d/g)", x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g", contacts="-", work="rho g d^3"
+    )
+    folder.write("intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d")), bead_radius=clump.bead_radius)
+    state, steps = O.bodies[body].state, max(1, round(p.time / O.dt))
+    block = max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
+    start = state.pos
+    frame_steps = iter(np.linspace(0, steps, p.frames).round())
+    due = next(frame_steps)
+
+    def sample(done):
+        nonlocal due
+        position, velocity = state.pos - start, state.vel
+        folder.append(
+            t=done * O.dt,
+            x=position[0],
+            y=position[1],
+            vx=velocity[0],
+            vy=velocity[1],
+            fx=drive.force[0],
+            fy=drive.force[1],
+            contacts=binner.lastContactNumber,
+            work=drive.work,
+        )
+        if due is not None and done >= due:
+            keep_frame(folder, done * O.dt, ids, state)
+            due = next(frame_steps, None)
+
+    sample(0)
+    timing = progress.run_blocks(steps, block, sample, grains=len(ids), label="shaking")
+    folder.note(steps=timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)
+
+
+def keep_frame(folder, t, ids, state):
+    """Store grains and contacts of this moment."""
+    from yade import O
+
+    contacts = engines.contact_table(O._sceneObj)
+    folder.frame(
+        t,
+        {**scene.grains(ids), "intruder": np.array(state.pos)[:2]},
+        dict(
+            i=contacts["i"],
+            j=contacts["j"],
+            fn=np.linalg.norm(contacts["normal_force"], axis=1),
+            ft=np.linalg.norm(contacts["tangential_force"], axis=1),
+            px=contacts["point"][:, 0],
+            py=contacts["point"][:, 1],
+        ),
+    )
+
+
+def main(**defaults):
+    """Entry of this study and of its presets, which give `defaults`."""
+    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=results.figure)
+
+
+if __name__ == "__main__":
+    main()
