@@ -1,0 +1,177 @@
+/// The loop's inner functions: forces of a pack of pairs, and the motion of a block of free grains (leapfrog, both half kicks merged).
+///
+///   v_{n+1/2} = v_{n-1/2} + (F_n / m + g) dt,   x_{n+1} = x_n + v_{n+1/2} dt,   (R w)_{n+1/2} = (R w)_{n-1/2} + (R^2 / I) sum F_t dt
+///
+/// A sweep runs through the free grains in memory order. A pair is owned by its lower index, so once the pairs owned up to grain i are
+/// computed nothing will ask for grain i's old position again, and it can move at once, while its row is still in the nearest cache.
+#pragma once
+#include <algorithm>
+
+#include "engines/loop/row_transpose.hpp"
+
+namespace graindrive::loop {
+namespace {
+
+template <class S>
+struct PackForces {
+	S x, y, friction, normal, slip;
+};
+
+/// One pack of pairs: columns of row differences and sums -> forces on the owners. One division serves 1/r, R_eff and m_eff.
+template <class Law, class S>
+inline PackForces<S> pack_forces(const Law& law, const S column[8], const S& slip, const S& dt)
+{
+	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3];
+	const S &reach = column[4], &surface_speed = column[5], &curvature = column[6], &inverse_mass = column[7];
+	const S zero(0);
+	const S distance = sqrt(dx * dx + dy * dy);
+	const S product = curvature * inverse_mass;
+	const S inverse = S(1) / (product * distance);
+	const S n_x = dx * (product * inverse), n_y = dy * (product * inverse);
+	const S overlap = reach - distance;
+	const auto touching = overlap > zero;
+
+	laws::Kinematics<S, S> contact;
+	contact.overlap = max(overlap, zero);
+	contact.normal_velocity = dvx * n_x + dvy * n_y;
+	contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
+	contact.effective_radius = inverse_mass * (distance * inverse);
+	contact.effective_mass = curvature * (distance * inverse);
+	contact.dt = dt;
+
+	const auto response = law(contact, slip);
+	const S normal = select(touching, response.normal, zero), friction = select(touching, response.tangential, zero);
+	return { zero - (normal * n_x + friction * n_y), friction * n_x - normal * n_y, friction, normal, select(touching, response.slip, zero) };
+}
+
+template <class Law, class P, bool Friction>
+struct Body {
+	using Turn = Transposer<P>;
+	using S = typename Turn::Number;
+
+	template <bool Wrapped>
+	static inline void pack(const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at)
+	{
+		S column[8];
+		Turn::template columns<Wrapped>(difference, data.links + at, column);
+		P* slips = static_cast<P*>(data.slips) + at;
+		PackForces<S> f = pack_forces(law, column, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
+		if constexpr (Friction) f.slip.store(slips);
+		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
+	}
+
+	__attribute__((flatten)) static void pairs(const KernelData& data, std::uint32_t begin, std::uint32_t end, bool wrapped)
+	{
+		const Law law = narrowed(data);
+		const RowDifference difference(data);
+		if (wrapped)
+			for (std::uint32_t at = begin; at < end; at += S::width) pack<true>(difference, data, law, at);
+		else
+			for (std::uint32_t at = begin; at < end; at += S::width) pack<false>(difference, data, law, at);
+	}
+
+	__attribute__((flatten)) static FastestSpeed sweep(
+		const KernelData& data, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair)
+	{
+		const Law law = narrowed(data);
+		const RowDifference difference(data);
+		Two fastest = {};
+		std::uint32_t at = first_pair;
+		for (std::uint32_t block = begin; block < end; ++block) {
+			for (const std::uint32_t done = data.block_pair_end[block]; at < done; at += S::width) pack<false>(difference, data, law, at);
+			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0) fold(data, block);
+			move_block(data, block * grains_per_block, std::min((block + 1) * grains_per_block, n_free), fastest);
+		}
+		return { fastest[0], fastest[1] };
+	}
+
+private:
+	typedef double Two __attribute__((vector_size(16)));
+	typedef P Four __attribute__((vector_size(4 * sizeof(P))));
+
+	static Law narrowed(const KernelData& data);
+
+	static void fold(const KernelData& data, std::uint32_t block)
+	{
+		auto* forces = static_cast<PairForce<P>*>(data.forces);
+		for (std::uint32_t f = block > 0 ? data.block_fold_end[block - 1] : 0; f < data.block_fold_end[block]; ++f) {
+			PairForce<P> sum {};
+			for (std::uint32_t s = data.folds[f].begin; s < data.folds[f].end; ++s) {
+				const PairForce<P>& one = forces[data.fold_sources[s]];
+				sum = { sum.x + one.x, sum.y + one.y, sum.friction + one.friction, sum.normal + one.normal };
+			}
+			forces[data.folds[f].target] = sum;
+		}
+	}
+
+	static inline void move_block(const KernelData& data, std::uint32_t begin, std::uint32_t end, Two& fastest)
+	{
+		const auto* forces = static_cast<const Four*>(data.forces);
+		const Two gravity_kick = { data.gravity_x * data.kick, data.gravity_y * data.kick };
+		const Four partner_sign = { -1, -1, 1, 1 };
+		const double spin_kick = data.spin_response;
+		for (std::uint32_t g = begin; g < end; ++g) {
+			const std::uint32_t* at = data.slots[g].at;
+			const Four owned = (forces[at[0]] + forces[at[1]]) + forces[at[2]];
+			const Four partnered = (forces[at[3]] + forces[at[4]]) + forces[at[5]];
+			const Four total = partnered * partner_sign + owned;
+			GrainRow& row = data.rows[g];
+			const double response = row.inverse_mass * data.kick;
+			Two position, velocity;
+			std::memcpy(&position, &row.x, sizeof position);
+			std::memcpy(&velocity, &row.vx, sizeof velocity);
+			const Two force = { double(total[0]), double(total[1]) };
+			velocity = velocity + (force * response + gravity_kick);
+			position = position + velocity * data.drift;
+			std::memcpy(&row.x, &position, sizeof position);
+			std::memcpy(&row.vx, &velocity, sizeof velocity);
+			row.surface_speed += double(total[2]) * (response * spin_kick);
+			const Two speed = velocity < 0 ? -velocity : velocity;
+			fastest = speed > fastest ? speed : fastest;
+		}
+	}
+};
+
+template <class P>
+laws::HertzHistory<P> narrow(const laws::HertzHistory<Real>& l) { return { P(l.k_n), P(l.k_t), P(l.gamma_n), P(l.gamma_t), P(l.mu) }; }
+template <class P>
+laws::HertzRestitution<P> narrow(const laws::HertzRestitution<Real>& l) { return { P(l.effective_young), P(l.tangential_ratio), P(l.damping_fraction), P(l.mu) }; }
+template <class P>
+laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l) { return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) }; }
+
+template <template <class> class Law, class P, bool Friction>
+Kernel kernel_of()
+{
+	using B = Body<Law<P>, P, Friction>;
+	return { &B::pairs, &B::sweep, compiled_for, B::S::width };
+}
+
+template <class Law, class P, bool Friction>
+Law Body<Law, P, Friction>::narrowed(const KernelData& data)
+{
+	return std::visit([](const auto& stored) -> Law {
+		const auto candidate = narrow<P>(stored);
+		if constexpr (std::is_same_v<std::decay_t<decltype(candidate)>, Law>) return candidate;
+		else return Law {};
+	}, *data.law);
+}
+
+template <template <class> class Law>
+Kernel kernel_of(const KernelChoice& choice)
+{
+	if (choice.precision == Precision::single) return choice.friction ? kernel_of<Law, float, true>() : kernel_of<Law, float, false>();
+	return choice.friction ? kernel_of<Law, double, true>() : kernel_of<Law, double, false>();
+}
+
+/// One set of kernels, for the instructions this file is compiled for.
+Kernel kernel_compiled_here(const KernelChoice& choice)
+{
+	switch (choice.law) {
+		case 0: return kernel_of<laws::HertzHistory>(choice);
+		case 1: return kernel_of<laws::HertzRestitution>(choice);
+		default: return kernel_of<laws::SpringDashpot>(choice);
+	}
+}
+
+}  // namespace
+}  // namespace graindrive::loop

@@ -1,0 +1,193 @@
+/// Lays pairs out in memory: first each thread's own, swept in order, then those that must be computed before anything moves.
+#include "engines/loop/pair_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr std::uint32_t row_bytes = sizeof(GrainRow);
+constexpr std::uint32_t first_place = pack_alignment;  // place 0 is "no force"
+
+std::uint32_t padded(std::uint32_t places) { return (places + pack_alignment - 1) / pack_alignment * pack_alignment; }
+
+}  // namespace
+
+void PairList::select(const GrainRow* rows, const Box& box, double gap)
+{
+	for (Candidate& pair : candidates) {
+		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
+		double dx = b.x - a.x, dy = b.y - a.y;
+		if (pair.wrapped) {
+			const Separation d = separation(a, b, box);
+			dx = d.x;
+			dy = d.y;
+		}
+		const double reach = a.radius + b.radius + gap;
+		pair.near = dx * dx + dy * dy < reach * reach;
+	}
+}
+
+void PairList::lay_out(std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision kernel_precision, std::uint32_t dummy_row)
+{
+	precision = kernel_precision;
+	place_pairs(n_free, threads, dummy_row);
+	fill_slots(n_free);
+	list_members(n_free, n_grains);
+}
+
+void PairList::place_pairs(std::uint32_t n_free, int threads, std::uint32_t dummy_row)
+{
+	const std::uint32_t blocks = (n_free + grains_per_block - 1) / grains_per_block;
+	const std::uint32_t room = padded(candidates.size()) + (threads + 3) * pack_alignment;
+	const PairLink dummy { dummy_row * row_bytes, (dummy_row + 1) * row_bytes };
+	place.assign(candidates.size(), 0);
+	links.assign(room, dummy);
+	slips.assign(room, 0.0);
+	block_pair_end.assign(blocks, 0);
+	sweeps.assign(threads, {});
+
+	std::vector<std::uint32_t> early;
+	std::uint32_t next = first_place, c = 0;
+	const auto put = [&](std::uint32_t candidate) {
+		links[next] = { candidates[candidate].first * row_bytes, candidates[candidate].second * row_bytes };
+		put_slip(next, candidates[candidate].slip);
+		place[candidate] = next++;
+	};
+	for (int t = 0; t < threads; ++t) {
+		SweepRange& sweep = sweeps[t];
+		sweep.block_begin = std::uint64_t(blocks) * t / threads;
+		sweep.block_end = std::uint64_t(blocks) * (t + 1) / threads;
+		sweep.pair_begin = next;
+		const std::uint32_t range_end = std::min(sweep.block_end * grains_per_block, n_free);
+		for (std::uint32_t b = sweep.block_begin; b < sweep.block_end; ++b) {
+			const std::uint32_t block_end = std::min((b + 1) * grains_per_block, n_free);
+			for (; c < candidates.size() && candidates[c].first < block_end; ++c) {
+				if (!candidates[c].near) continue;
+				const bool crosses = candidates[c].second < n_free && candidates[c].second >= range_end;
+				if (candidates[c].wrapped || crosses) early.push_back(c);
+				else put(c);
+			}
+			block_pair_end[b] = next;
+		}
+		sweep.pair_end = next = padded(next);
+	}
+	for (; c < candidates.size(); ++c)
+		if (candidates[c].near) early.push_back(c);
+	early_begin = next;
+	for (const std::uint32_t candidate : early) put(candidate);
+	early_end = padded(next);
+}
+
+void PairList::fill_slots(std::uint32_t n_free)
+{
+	static thread_local std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;
+	owned.assign(n_free, 0);
+	partnered.assign(n_free, 0);
+	for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+		if (!place[c]) continue;
+		if (candidates[c].first < n_free) owned[candidates[c].first] += owned[candidates[c].first] < 255;
+		if (candidates[c].second < n_free) partnered[candidates[c].second] += partnered[candidates[c].second] < 255;
+	}
+	used_owned.assign(n_free, 0);
+	used_partnered.assign(n_free, 0);
+	slots.assign(n_free, ForceSlots {});
+	surplus.clear();
+	// A side with too many keeps its last slot for the fold of its surplus.
+	const auto give = [&](std::uint32_t grain, std::uint32_t at, std::uint8_t have, std::uint8_t& used, bool partner) {
+		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1) slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at;
+		else surplus.push_back({ grain, at, partner });
+	};
+	for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+		if (!place[c]) continue;
+		const std::uint32_t a = candidates[c].first, b = candidates[c].second;
+		if (a < n_free) give(a, place[c], owned[a], used_owned[a], false);
+		if (b < n_free) give(b, place[c], partnered[b], used_partnered[b], true);
+	}
+	fold_surplus(early_end);
+}
+
+void PairList::fold_surplus(std::uint32_t next_place)
+{
+	const auto before = [](const Surplus& a, const Surplus& b) { return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner; };
+	std::stable_sort(surplus.begin(), surplus.end(), before);
+	folds.clear();
+	fold_sources.clear();
+	block_fold_end.assign(block_pair_end.size(), 0);
+	for (std::size_t s = 0; s < surplus.size();) {
+		const Surplus lead = surplus[s];
+		Fold fold { next_place++, static_cast<std::uint32_t>(fold_sources.size()), 0, lead.partner };
+		for (; s < surplus.size() && surplus[s].grain == lead.grain && surplus[s].partner == lead.partner; ++s) fold_sources.push_back(surplus[s].place);
+		fold.end = fold_sources.size();
+		slots[lead.grain].at[(lead.partner ? ForceSlots::owned : 0) + ForceSlots::owned - 1] = fold.target;
+		folds.push_back(fold);
+		block_fold_end[lead.grain / grains_per_block] = folds.size();
+	}
+	for (std::size_t b = 1; b < block_fold_end.size(); ++b) block_fold_end[b] = std::max(block_fold_end[b], block_fold_end[b - 1]);
+	forces.assign(next_place, PairForce<double> {});
+}
+
+void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)
+{
+	member_begin.assign(n_grains - n_free + 1, 0);
+	const auto each = [&](auto&& visit) {
+		for (std::uint32_t c = 0; c < candidates.size(); ++c) {
+			if (!place[c]) continue;
+			if (candidates[c].first >= n_free) visit(candidates[c].first - n_free, Share { c, false });
+			if (candidates[c].second >= n_free) visit(candidates[c].second - n_free, Share { c, true });
+		}
+	};
+	each([&](std::uint32_t member, Share) { ++member_begin[member + 1]; });
+	for (std::size_t m = 1; m < member_begin.size(); ++m) member_begin[m] += member_begin[m - 1];
+	member_shares.resize(member_begin.back());
+	std::vector<std::uint32_t> next(member_begin.begin(), member_begin.end() - 1);
+	each([&](std::uint32_t member, Share share) { member_shares[next[member]++] = share; });
+}
+
+void PairList::keep_slips()
+{
+	for (std::uint32_t c = 0; c < place.size(); ++c)
+		if (place[c]) candidates[c].slip = slip(c);
+}
+
+void PairList::put_back_slips()
+{
+	for (std::uint32_t c = 0; c < place.size(); ++c)
+		if (place[c]) put_slip(place[c], candidates[c].slip);
+}
+
+void PairList::put_slip(std::uint32_t at, double slip)
+{
+	if (precision == Precision::double_) slips[at] = slip;
+	else reinterpret_cast<float*>(slips.data())[at] = static_cast<float>(slip);
+}
+
+double PairList::slip(std::uint32_t candidate) const
+{
+	if (!place[candidate]) return candidates[candidate].slip;
+	return precision == Precision::double_ ? slips[place[candidate]] : reinterpret_cast<const float*>(slips.data())[place[candidate]];
+}
+
+PairForce<double> PairList::force(std::uint32_t candidate) const
+{
+	if (!place[candidate]) return {};
+	if (precision == Precision::double_) return forces[place[candidate]];
+	const PairForce<float>& f = reinterpret_cast<const PairForce<float>*>(forces.data())[place[candidate]];
+	return { f.x, f.y, f.friction, f.normal };
+}
+
+void PairList::point(KernelData& data)
+{
+	data.links = links.data();
+	data.slips = slips.data();
+	data.forces = forces.data();
+	data.slots = slots.data();
+	data.folds = folds.data();
+	data.fold_sources = fold_sources.data();
+	data.block_pair_end = block_pair_end.data();
+	data.block_fold_end = block_fold_end.data();
+}
+
+}  // namespace graindrive::loop

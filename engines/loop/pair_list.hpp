@@ -1,0 +1,68 @@
+/// Which pairs the kernels compute now, where in memory, and where each grain finds its forces.
+///
+/// Candidates (within the skin) change at a search; the selected ones (about to touch) change more often and cheaply. A pair's place decides
+/// nothing but memory: every grain adds its forces in the order of its candidates, so results do not depend on places or on threads.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engines/loop/pair_search.hpp"
+
+namespace graindrive::loop {
+
+/// What one thread sweeps: blocks of free grains and the places of the pairs they own.
+struct SweepRange {
+	std::uint32_t block_begin, block_end, pair_begin, pair_end;
+};
+
+class PairList {
+public:
+	std::vector<Candidate> candidates;
+
+	/// Selects the candidates whose surfaces are nearer than `gap` [m], lays them out for `threads` and points the grains' slots at them.
+	void select(const GrainRow* rows, const Box& box, double gap);
+	void lay_out(std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision, std::uint32_t dummy_row);
+	/// Brings the tangential springs of the selected pairs back into the candidates.
+	void keep_slips();
+	void put_back_slips();  ///< and into the kernels' memory again
+	void point(KernelData& data);
+
+	std::vector<SweepRange> sweeps;              ///< one per thread
+	std::uint32_t early_begin = 0, early_end = 0;  ///< pairs to be computed before anything moves: across threads or periodic sides, between bodies
+	std::vector<std::uint32_t> place;            ///< by candidate; 0 = not selected
+
+	/// Forces on grains that do not move freely: by member, the places and which side of the pair it is.
+	struct Share {
+		std::uint32_t candidate;
+		bool partner;
+	};
+	std::vector<std::uint32_t> member_begin;
+	std::vector<Share> member_shares;
+
+	PairForce<double> force(std::uint32_t candidate) const;
+	double slip(std::uint32_t candidate) const;
+
+private:
+	void put_slip(std::uint32_t at, double slip);
+
+	Precision precision = Precision::double_;
+	AlignedVector<PairLink> links;
+	AlignedVector<double> slips;    // room for doubles; floats use half of it
+	AlignedVector<PairForce<double>> forces;
+	AlignedVector<ForceSlots> slots;
+	std::vector<Fold> folds;
+	std::vector<std::uint32_t> fold_sources, block_pair_end, block_fold_end;
+
+	struct Surplus {
+		std::uint32_t grain, place;
+		bool partner;
+	};
+	std::vector<Surplus> surplus;
+
+	void place_pairs(std::uint32_t n_free, int threads, std::uint32_t dummy_row);
+	void fill_slots(std::uint32_t n_free);
+	void fold_surplus(std::uint32_t next_place);
+	void list_members(std::uint32_t n_free, std::uint32_t n_grains);
+};
+
+}  // namespace graindrive::loop

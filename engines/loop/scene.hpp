@@ -1,0 +1,52 @@
+/// What a scene consists of: grains, rigid bodies made of grains, a box and a contact law. Plain data, in the units of the caller.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "engines/loop/kernel.hpp"
+
+namespace graindrive::loop {
+
+constexpr int free_grain = -1;  ///< `Grain::body` of a grain that belongs to no rigid body
+
+struct Grain {
+	double x = 0, y = 0;      ///< centre [m]
+	double vx = 0, vy = 0;    ///< velocity [m/s], half a step behind the position (leapfrog)
+	double spin = 0;          ///< angular velocity, counter-clockwise [rad/s]
+	double radius = 0;        ///< [m]
+	double mass = 0;          ///< [kg]; infinity lets a grain of a fixed body count with the partner's mass alone in m_eff
+	int body = free_grain;    ///< index in `Scene::bodies`, or `free_grain`
+};
+
+/// Grains that move as one: a driven disk, a glued intruder, a drum, a wall or base of frozen grains.
+/// Members feel no contacts among themselves. A degree of freedom that does not respond keeps the velocity it is given.
+struct RigidBody {
+	double x = 0, y = 0, angle = 0;    ///< centre of mass [m], orientation [rad]
+	double vx = 0, vy = 0, spin = 0;   ///< [m/s], [rad/s]
+	double mass = 0, inertia = 0;      ///< [kg], [kg m^2]; needed where the body responds
+	bool responds_x = false, responds_y = false, responds_spin = false;  ///< to contacts and gravity
+	double force_x = 0, force_y = 0, torque = 0;  ///< by contacts, in the last step [N], [N m]
+};
+
+struct Box {
+	double x_low = 0, x_high = 0, y_low = 0, y_high = 0;  ///< [m]; used where periodic
+	bool periodic_x = false, periodic_y = false;
+};
+
+struct Scene {
+	std::vector<Grain> grains;
+	std::vector<RigidBody> bodies;
+	Box box;
+	ContactLaw law;
+	bool friction = true;       ///< off: no tangential force and no history
+	bool rotation = true;       ///< off: spins stay as they are
+	double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
+	double dt = 0;              ///< time step [s]
+	Precision precision = Precision::double_;
+	int threads = 1;
+	double spin_response = 2;   ///< m R^2 / I of free grains: 2 for disks
+	double skin = 0;            ///< how far beyond touching neighbours are listed [m]; 0 lets the loop choose
+};
+
+}  // namespace graindrive::loop

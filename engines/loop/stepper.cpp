@@ -1,0 +1,155 @@
+/// One step: lists if anything may have come near, forces of early pairs, the sweep, then bodies.
+#include "engines/loop/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double steps_between_selections = 40, steps_between_searches = 300;  // aimed at, where grains are fast
+constexpr double smallest_gap = 0.002, smallest_skin = 0.1, largest_skin = 0.35;  // [d]
+
+}  // namespace
+
+Stepper::Stepper(const Scene& given) : scene(given), kernel(choose_kernel({ given.law.index(), given.friction, given.precision })), team(given.threads)
+{
+	arrange_rows();
+	data.dt = data.kick = data.drift = scene.dt;
+	data.gravity_x = scene.gravity_x;
+	data.gravity_y = scene.gravity_y;
+	data.spin_response = scene.rotation ? scene.spin_response : 0;
+	data.law = &scene.law;
+	if (scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = scene.box.x_high - scene.box.x_low);
+	if (scene.box.periodic_y) data.inverse_length_y = 1 / (data.length_y = scene.box.y_high - scene.box.y_low);
+	thread_fastest.resize(scene.threads);
+	fastest = HUGE_VAL;
+}
+
+void Stepper::arrange_rows()
+{
+	n_grains = scene.grains.size();
+	row_of.resize(n_grains);
+	for (std::uint32_t i = 0; i < n_grains; ++i)
+		if (scene.grains[i].body == free_grain) index_of.push_back(i);
+	n_free = index_of.size();
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+		body_members.push_back(index_of.size() - n_free);
+		double reach = 0;
+		const RigidBody& body = scene.bodies[b];
+		for (std::uint32_t i = 0; i < n_grains; ++i) {
+			const Grain& g = scene.grains[i];
+			if (g.body != static_cast<int>(b)) continue;
+			index_of.push_back(i);
+			const double dx = g.x - body.x, dy = g.y - body.y, c = std::cos(body.angle), s = std::sin(body.angle);
+			members.push_back({ c * dx + s * dy, c * dy - s * dx, 0, 0, static_cast<int>(b) });
+			reach = std::max(reach, std::hypot(dx, dy) + g.radius);
+		}
+		body_reach.push_back(reach);
+		body_fixed.push_back(!body.responds_x && !body.responds_y && !body.responds_spin && body.vx == 0 && body.vy == 0 && body.spin == 0);
+	}
+	body_members.push_back(members.size());
+	rows.resize(n_grains + 2);
+	double sum = 0;
+	for (std::uint32_t at = 0; at < n_grains; ++at) {
+		const Grain& g = scene.grains[index_of[at]];
+		row_of[index_of[at]] = at;
+		rows[at] = { g.x, g.y, g.vx, g.vy, g.radius, g.radius * g.spin, 1 / g.radius, 1 / g.mass };
+		if (at < n_free) largest_free_radius = std::max(largest_free_radius, g.radius);
+		sum += 2 * g.radius;
+	}
+	typical_diameter = sum / n_grains;
+	rows[n_grains] = { 0, 0, 0, 0, typical_diameter, 0, 1 / typical_diameter, 1 };  // a pair that never touches fills up packs
+	rows[n_grains + 1] = { 10 * typical_diameter, 0, 0, 0, typical_diameter, 0, 1 / typical_diameter, 1 };
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b) place_members(b);
+}
+
+void Stepper::step(long n)
+{
+	failure = nullptr;
+	team.run([&](int rank) { advance(rank, n); });
+	if (failure) std::rethrow_exception(failure);
+}
+
+void Stepper::advance(int rank, long n)
+{
+	for (long k = 0; k < n && !failure; ++k) one_step(rank);
+}
+
+void Stepper::one_step(int rank)
+{
+	if (rank == 0) prepare();
+	team.barrier();
+	if (failure) return;
+	const std::uint32_t packs = (pairs.early_end - pairs.early_begin) / pack_alignment;
+	const auto share = [&](int r) { return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / scene.threads) * pack_alignment; };
+	kernel.pairs(data, share(rank), share(rank + 1), true);
+	team.barrier();
+	const SweepRange& mine = pairs.sweeps[rank];
+	thread_fastest[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
+	team.barrier();
+	if (rank == 0) finish();
+}
+
+void Stepper::prepare()
+{
+	try {
+		if (moved_since_selection > gap || selections == 0) {
+			select();
+		}
+	} catch (...) {
+		failure = std::current_exception();
+	}
+}
+
+void Stepper::finish()
+{
+	FastestSpeed all;
+	for (const FastestSpeed& one : thread_fastest) all = { std::max(all.x, one.x), std::max(all.y, one.y) };
+	fastest = std::hypot(all.x, all.y);
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+		if (body_fixed[b]) continue;
+		collect_forces(b);
+		move_body(b);
+		const RigidBody& body = scene.bodies[b];
+		fastest = std::max(fastest, std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b]);
+	}
+	const double approach = 2 * fastest * data.drift;
+	moved_since_selection += approach;
+	moved_since_search += approach;
+	++steps;
+}
+
+void Stepper::select()
+{
+	if (selections > 0) pairs.keep_slips();
+	const double wanted = std::isfinite(fastest) ? 2 * fastest * scene.dt * steps_between_selections : 0;
+	gap = std::clamp(wanted, smallest_gap * typical_diameter, 0.5 * std::max(skin, smallest_skin * typical_diameter));
+	if (searches > 0 && moved_since_search > skin - gap) moved_since_search = 2 * farthest_moved();
+	if (searches == 0 || !(moved_since_search <= skin - gap)) search();
+	pairs.select(rows.data(), scene.box, gap);
+	pairs.lay_out(n_free, n_grains, scene.threads, scene.precision, n_grains);
+	pairs.point(data);
+	data.rows = rows.data();
+	moved_since_selection = 0;
+	++selections;
+}
+
+double Stepper::farthest_moved() const
+{
+	double farthest = 0;
+	for (std::uint32_t i = 0; i < n_grains; ++i) {
+		const double dx = rows[i].x - searched_at[2 * i], dy = rows[i].y - searched_at[2 * i + 1];
+		farthest = std::max(farthest, dx * dx + dy * dy);
+	}
+	return std::sqrt(farthest);
+}
+
+std::size_t Stepper::pairs_selected() const
+{
+	return std::count_if(pairs.place.begin(), pairs.place.end(), [](std::uint32_t at) { return at != 0; });
+}
+
+}  // namespace graindrive::loop

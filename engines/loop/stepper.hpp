@@ -1,0 +1,95 @@
+/// The loop itself: search, pair forces and motion of a scene, step after step, the same bits on any number of threads.
+#pragma once
+#include <exception>
+#include <string>
+
+#include "engines/loop/pair_list.hpp"
+#include "engines/loop/thread_team.hpp"
+
+namespace graindrive::loop {
+
+/// A contact as it was in the last step. Forces act on `first`; on `second` they are opposite.
+struct Contact {
+	std::uint32_t first, second;  ///< indices in `Scene::grains`
+	double force_x, force_y;      ///< on first [N]
+	double normal, friction;      ///< F_n > 0 repels, F_t along z x n [N]
+	double slip;                  ///< tangential spring [m]
+};
+
+class Stepper {
+public:
+	/// @throws std::invalid_argument for a scene that cannot be run: says which number, the rule and the way out
+	explicit Stepper(const Scene& scene);
+
+	/// Goes n steps on. @throws std::runtime_error when a guard trips, with step, grain and likely cause
+	void step(long n = 1);
+
+	/// For velocities given on the step, not half a step behind: takes the first half kick (springs are left as they are).
+	void begin_on_step();
+
+	long steps_done() const { return steps; }
+	double time() const { return steps * scene.dt; }
+	const Scene& settings() const { return scene; }
+	std::vector<RigidBody>& bodies() { return scene.bodies; }
+
+	std::size_t size() const { return scene.grains.size(); }
+	Grain grain(std::size_t index) const;
+	void positions(double* xy) const;   ///< size() pairs, in the order of `Scene::grains`
+	void velocities(double* xy) const;
+	void spins(double* spin) const;
+	std::vector<Contact> contacts() const;
+
+	double kinetic_energy() const;          ///< of free grains, translation and rotation, at the half step [J]
+	double kinetic_energy_on_step();        ///< the same with the velocities of the whole step [J]
+
+	const Kernel& kernel_in_use() const { return kernel; }
+	long searches_done() const { return searches; }
+	long selections_done() const { return selections; }
+	std::size_t pairs_selected() const;
+
+private:
+	Scene scene;
+	Kernel kernel;
+	KernelData data {};
+	ThreadTeam team;
+	AlignedVector<GrainRow> rows;         // free grains by cell, members of bodies, two dummies
+	std::vector<std::uint32_t> index_of;  // place in memory -> index in Scene::grains
+	std::vector<std::uint32_t> row_of;    // and back
+	std::uint32_t n_free = 0, n_grains = 0;
+	std::vector<double> mass;             // by index
+	PairList pairs;
+	CellGrid grid;
+	long steps = 0, searches = 0, selections = 0;
+
+	struct Member {
+		double x, y;               // from the body's centre at angle 0 [m]
+		double shift_x, shift_y;   // from the body's image to the one in the box [m]
+		int body;
+	};
+	std::vector<Member> members;
+	std::vector<std::uint32_t> body_members;  // first member of each body
+	std::vector<double> body_reach;           // farthest point of each body from its centre [m]
+	std::vector<char> body_fixed;
+
+	double typical_diameter = 0, largest_free_radius = 0, skin = 0, gap = 0;
+	double moved_since_search = 0, moved_since_selection = 0;  // bounds on the approach of any two grains [m]
+	double fastest = 0;                                        // [m/s]
+	std::vector<double> searched_at;                           // x, y of free grains at the last search
+	std::vector<FastestSpeed> thread_fastest;
+	std::exception_ptr failure;
+
+	void arrange_rows();
+	void place_members(std::size_t body);
+	void advance(int rank, long n);
+	void one_step(int rank);
+	void prepare();
+	void search();
+	void sort_rows();
+	void select();
+	void finish();
+	void move_body(std::size_t body);
+	void collect_forces(std::size_t body);
+	double farthest_moved() const;
+};
+
+}  // namespace graindrive::loop

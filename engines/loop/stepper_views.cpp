@@ -1,0 +1,89 @@
+/// What others may look at: grains in the order they were given, contacts, energies.
+#include <cmath>
+
+#include "engines/loop/stepper.hpp"
+
+namespace graindrive::loop {
+
+Grain Stepper::grain(std::size_t index) const
+{
+	const GrainRow& row = rows[row_of[index]];
+	return { row.x, row.y, row.vx, row.vy, row.surface_speed / row.radius, row.radius, scene.grains[index].mass, scene.grains[index].body };
+}
+
+void Stepper::positions(double* xy) const
+{
+	for (std::size_t i = 0; i < size(); ++i) {
+		xy[2 * i] = rows[row_of[i]].x;
+		xy[2 * i + 1] = rows[row_of[i]].y;
+	}
+}
+
+void Stepper::velocities(double* xy) const
+{
+	for (std::size_t i = 0; i < size(); ++i) {
+		xy[2 * i] = rows[row_of[i]].vx;
+		xy[2 * i + 1] = rows[row_of[i]].vy;
+	}
+}
+
+void Stepper::spins(double* spin) const
+{
+	for (std::size_t i = 0; i < size(); ++i) spin[i] = rows[row_of[i]].surface_speed * rows[row_of[i]].inverse_radius;
+}
+
+std::vector<Contact> Stepper::contacts() const
+{
+	std::vector<Contact> found;
+	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
+		const PairForce<double> f = pairs.force(c);
+		if (f.x == 0 && f.y == 0) continue;
+		found.push_back({ index_of[pairs.candidates[c].first], index_of[pairs.candidates[c].second], f.x, f.y, f.normal, f.friction, pairs.slip(c) });
+	}
+	return found;
+}
+
+double Stepper::kinetic_energy() const
+{
+	double energy = 0;
+	for (std::uint32_t i = 0; i < n_free; ++i) {
+		const GrainRow& row = rows[i];
+		const double spinning = row.surface_speed * row.surface_speed / scene.spin_response;
+		energy += 0.5 / row.inverse_mass * (row.vx * row.vx + row.vy * row.vy + spinning);
+	}
+	return energy;
+}
+
+double Stepper::kinetic_energy_on_step()
+{
+	if (selections == 0) select();
+	pairs.keep_slips();
+	const AlignedVector<GrainRow> before = rows;
+	const auto bodies_before = scene.bodies;
+	const long steps_before = steps;
+	const double moved = moved_since_selection, moved_search = moved_since_search, fastest_before = fastest;
+	data.kick = 0.5 * scene.dt;
+	data.drift = 0;
+	step(1);
+	const double energy = kinetic_energy();
+	data.kick = data.drift = scene.dt;
+	rows = before;
+	data.rows = rows.data();
+	scene.bodies = bodies_before;
+	steps = steps_before;
+	moved_since_selection = moved;
+	moved_since_search = moved_search;
+	fastest = fastest_before;
+	pairs.put_back_slips();
+	return energy;
+}
+
+void Stepper::begin_on_step()
+{
+	data.dt = 0;
+	data.kick = 0.5 * scene.dt;
+	step(1);
+	data.dt = data.kick = scene.dt;
+}
+
+}  // namespace graindrive::loop
