@@ -48,8 +48,9 @@ class Run:
             with h5py.File(self.path / "run.h5", "r", libver="latest", swmr=True) as file:
                 self.series = read_series(file.get("series", {}))
                 self.units = {name: dataset.attrs.get("unit", "-") for name, dataset in file.get("series", {}).items()}
-            about = self.path / ("about.h5" if (self.path / "about.h5").exists() else "run.h5")
-            with h5py.File(about, "r") as file:
+                merged = "state" in file.attrs
+            about = self.path / ("run.h5" if merged else "about.h5")
+            with h5py.File(about, "r") as file:  # in a growing folder parameters have a file of their own
                 self.study, self.state = str(file.attrs["study"]), str(file.attrs["state"])
                 self.parameters = {name: plain(dataset[()]) for name, dataset in file["parameters"].items()}
                 self.units.update({name: dataset.attrs["unit"] for name, dataset in file["parameters"].items()})

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import run_data, run_remains, signals
+from . import run_data, run_remains, signals, vtk_export
 from .errors import Interrupted, UsageError, one_line
 from .provenance import provenance
 
@@ -22,7 +22,7 @@ class RunFolder:
     """Context in which one run writes its data; `path` is the folder while it grows, `out` its name when complete.
 
     On entry `out` is checked and its neighbour `.NAME.part-PID` made; nothing is ever overwritten. A good end writes
-    `run.h5` and `summary.json`, calls `figure(path)` and renames the folder to `out`. A UsageError removes it; a
+    `run.h5` and `summary.json`, calls `figure(path)`, exports frames if vtk=1 and renames the folder to `out`. A UsageError removes it; a
     signal keeps what was measured as `NAME.interrupted`, any other failure as `NAME.failed`. Entering raises UsageError
     if `out` cannot be used, AlreadyComplete if the same run is there.
     """
@@ -87,6 +87,8 @@ class RunFolder:
                 try:
                     run_remains.look_around(self)
                     self.make_part()
+                    if self.parameters.vtk:
+                        vtk_export.modules()
                 except OSError as error:
                     raise UsageError(
                         f"out={one_line(self.parameters.out)} cannot be written ({error.strerror or type(error).__name__});"
@@ -152,11 +154,20 @@ class RunFolder:
         (self.path / "summary.json").write_text(text + "\n")
         if self.figure is not None:
             self.figure(self.path)
+        if self.parameters.vtk:
+            self.export_vtk()
         self.close()
         run_remains.clear_work_files(self.path)
         run_remains.take_place(self.path, self.out, self.parameters.digest())
         if self.resumed:
             shutil.rmtree(self.resumed["remains"])
+
+    def export_vtk(self):
+        """Write all frames for ParaView into the subfolder `vtk`."""
+        from .postproc.reader import Run
+
+        run = Run(self.path)
+        vtk_export.export((run.frame(k) for k in range(len(run.frame_names))), self.path / "vtk")
 
     def keep(self, ending):
         """Save what was measured as NAME.`ending`; remove the folder if nothing was."""

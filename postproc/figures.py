@@ -1,0 +1,73 @@
+"""What all figures share: size of a paper's column, colours that colour-blind readers can tell apart, PNG and PDF."""
+
+import os
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import numpy as np  # noqa: E402
+from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
+
+COLUMN_WIDTH = 3.4  # inches: one column of a two-column journal
+# Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
+BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, GREY = "#000000 #E69F00 #56B4E9 #009E73 #0072B2 #D55E00 #BBBBBB".split()
+
+STYLE = {
+    "font.size": 8,
+    "axes.labelsize": 8,
+    "axes.titlesize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 0.9,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "savefig.dpi": 300,
+    "pdf.fonttype": 42,
+}
+
+
+def save(figure, folder):
+    """Write `figure.png` and `figure.pdf` into `folder`, each in one step, and close the figure."""
+    for ending in ("png", "pdf"):
+        target = Path(folder) / f"figure.{ending}"
+        temporary = target.with_name(f".{target.name}")
+        figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
+        os.replace(temporary, target)
+    plt.close(figure)
+
+
+def draw_grains(axes, x, y, r, *, values=None, colour=GREY, **options):
+    """Draw grains as circles of their true size: (n,) centres and radii [d], coloured by `values` or all alike."""
+    circles = EllipseCollection(
+        2 * r,
+        2 * r,
+        np.zeros_like(r),
+        offsets=np.column_stack([x, y]),
+        units="xy",
+        offset_transform=axes.transData,
+        **options,
+    )
+    circles.set(rasterized=len(x) > 3000, linewidth=0)
+    if values is None:
+        circles.set_facecolor(colour)
+    else:
+        circles.set_array(values)
+    return axes.add_collection(circles)
+
+
+def draw_chains(axes, start, end, force, *, colour=BLACK, widest=1.2, faintest=0.12):
+    """Draw contacts as lines (n, 2) to (n, 2) whose width grows with the force (n,); weak forces are left out.
+
+    `widest` is the width [pt] at the 99.5 % quantile of the force, above which it no longer grows; lines below the
+    fraction `faintest` of it are not drawn.
+    """
+    width = widest * np.clip(force / max(np.quantile(force, 0.995), 1e-300), 0, 1) if len(force) else np.zeros(0)
+    kept = width > faintest * widest
+    lines = LineCollection(np.stack([start[kept], end[kept]], axis=1), linewidths=width[kept], colors=colour)
+    lines.set(capstyle="round", rasterized=kept.sum() > 3000)
+    return axes.add_collection(lines)

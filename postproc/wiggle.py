@@ -1,0 +1,153 @@
+"""The figure of the wiggle study: the intruder's height over time, and the bed with speeds and force chains."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.colors import PowerNorm
+from matplotlib.patches import Polygon
+
+from .figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, draw_chains, draw_grains, save
+from .reader import BASE, GRAIN, INTRUDER, Run
+from .statistics import drift
+
+VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
+NAMES = {"disk": "disk", "square": "square", "tall": "tall rectangle", "wide": "wide rectangle", "triangle": "triangle"}
+
+
+def draw(path, frame=-1):
+    """Draw figure.png and figure.pdf of the run folder `path` from its data alone; `frame` chooses the picture."""
+    run = Run(path)
+    with plt.rc_context(STYLE):
+        bed = run.frame(frame) if run.frame_names else None
+        box = view(run, bed) if bed else None
+        heights = [1.7, 0.5 + 2.55 * box[1, 1] / box[1, 0]] if bed else [1.7]
+        size = (COLUMN_WIDTH, 0.2 + sum(heights))
+        figure, axes = plt.subplots(
+            len(heights), 1, figsize=size, height_ratios=heights, squeeze=False, layout="constrained"
+        )
+        figure.suptitle(title(run), fontsize=8)
+        draw_height(axes[0, 0], run)
+        if bed:
+            draw_bed(figure, axes[1, 0], run, bed, box)
+            axes[0, 0].set_title("(a)", loc="left")
+            axes[1, 0].set_title("(b)", loc="left")
+        save(figure, path)
+
+
+def draw_height(axes, run):
+    """Height over its start against time, cycle means, the line of the fitted rise rate, and the drive's period."""
+    t, y = run.series["t"], run.series["y"] - run.series["y"][:1]
+    period = float(run.parameters["period"])
+    axes.plot(t, y, color=GREY, linewidth=0.5, label="intruder")
+    found = drift(t, y, period)
+    axes.plot(found.cycle_t, found.cycle_y, color=BLUE, label="mean of a cycle")
+    if np.isfinite(found.rate):
+        draw_rate(axes, found)
+    axes.margins(x=0)
+    axes.set(xlabel=r"$t$  [$\sqrt{d/g}$]", ylabel=r"$y - y_0$  [$d$]")
+    axes.legend(loc="best", framealpha=0.8, edgecolor="none", handlelength=1.4, borderaxespad=0.3)
+    draw_period(axes, period)
+
+
+def title(run):
+    """Return in words what shape is driven how."""
+    p = run.parameters
+    shape = NAMES.get(str(p.get("shape", "")), str(p.get("shape", "intruder")))
+    return (
+        rf"{shape}, $A$ = {p['amplitude']:g} $d$, $T$ = {p['period']:g} $\sqrt{{d/g}}$, $\mu$ = {p.get('mu', np.nan):g}"
+    )
+
+
+def draw_rate(axes, found):
+    """Line from the first to the last cycle of the average, whose slope is the rise rate, named with its error."""
+    inside = (found.cycle_t >= found.start) & (found.cycle_t <= found.end)
+    label = rf"$V_y$ = {with_error(found.rate, found.error)} $\sqrt{{gd}}$"
+    ends = found.cycle_y[inside][[0, -1]]
+    axes.plot([found.start, found.end], ends, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
+
+
+def with_error(value, error):
+    """Return "0.0123 ± 0.0005" with as many digits as the error allows, two of its own."""
+    if not np.isfinite(error) or error <= 0:
+        return f"{value:.3g}"
+    decimals = int(np.clip(1 - np.floor(np.log10(error)), 0, 8))
+    return f"{value:.{decimals}f} ± {error:.{decimals}f}"
+
+
+def draw_period(axes, period):
+    """Mark the drive's period, or ten or more of them where one is too short to see, as a bar above the panel."""
+    left, right = axes.get_xlim()
+    periods = next((n for n in (1, 10, 100) if n * period > 0.05 * (right - left)), 1000)
+    above = axes.get_xaxis_transform()
+    axes.plot(
+        [right - periods * period, right], [1.06, 1.06], color=BLACK, linewidth=1.5, transform=above, clip_on=False
+    )
+    text = r"$T$" if periods == 1 else rf"{periods} $T$"
+    axes.text(
+        right - periods * period - 0.01 * (right - left),
+        1.06,
+        text,
+        transform=above,
+        ha="right",
+        va="center",
+        fontsize=7,
+    )
+
+
+def view(run, bed):
+    """Return [[left, bottom], [width, height]] of the picture: the whole bed, or `VIEW` around the intruder."""
+    x, y = run.at(bed.t, "x", "y")
+    bottom, top = np.min(bed.grains["y"] - bed.grains["r"]) - 0.5, np.max(bed.grains["y"] + bed.grains["r"]) + 1
+    size = np.minimum(VIEW, [float(run.parameters["width"]), top - bottom])
+    left = x - size[0] / 2 if size[0] < float(run.parameters["width"]) else 0.0
+    return np.array([[left, np.clip(y - size[1] / 2, bottom, top - size[1])], size])
+
+
+def draw_bed(figure, axes, run, bed, box):
+    """Grains coloured by speed, force chains as lines as wide as their normal force, base in grey, intruder outlined."""
+    x, y, r = (np.asarray(bed.grains[name], dtype=float) for name in ("x", "y", "r"))
+    (left, bottom), (width, height) = box
+    period_x = float(run.parameters["width"])
+    x = left + np.mod(x - left, period_x)
+    shown = (x < left + width + 1) & (np.abs(y - bottom - height / 2) < height / 2 + 1)
+    grains, base = shown & (bed.role == GRAIN), shown & (bed.role == BASE)
+    speeds = bed.speed
+    norm = PowerNorm(0.5, 0, max(np.quantile(speeds[grains], 0.995), 1e-12) if grains.any() else 1)
+    circles = draw_grains(axes, x[grains], y[grains], r[grains], values=speeds[grains], cmap="YlGnBu", norm=norm)
+    draw_grains(axes, x[base], y[base], r[base], colour=GREY)
+    draw_forces(axes, bed, x, y, period_x, shown, widest=0.35 * 72 * 2.55 / width)
+    centre_x, centre_y = run.at(bed.t, "x", "y")
+    draw_intruder(axes, run.group("intruder"), np.array([left + np.mod(centre_x - left, period_x), centre_y]))
+    axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height), aspect="equal")
+    axes.set(xlabel=r"$x$  [$d$]", ylabel=r"$y$  [$d$]")
+    axes.set_title(rf"$t$ = {bed.t:.4g} $\sqrt{{d/g}}$")
+    bar = figure.colorbar(circles, ax=axes, pad=0.02, fraction=0.05, aspect=25, extend="max")
+    bar.set_label(r"speed  [$\sqrt{gd}$]")
+    bar.ax.minorticks_off()
+
+
+def draw_forces(axes, bed, x, y, period_x, shown, widest):
+    """Lines between the centres of touching grains; to the contact point where one side is the intruder."""
+    c = bed.contacts
+    if not c or len(c["fn"]) == 0:
+        return
+    i, j = (np.asarray(c[name], dtype=int) for name in ("i", "j"))
+    point = np.column_stack([c["px"], c["py"]])
+    centres = np.column_stack([x, y])
+    ends = [np.where((k == INTRUDER)[:, None], point, centres[np.maximum(k, 0)]) for k in (i, j)]
+    start = np.where((i == INTRUDER)[:, None], ends[1], ends[0])
+    end = np.where((i == INTRUDER)[:, None], ends[0], ends[1])
+    reach = end - start
+    reach[:, 0] -= period_x * np.round(reach[:, 0] / period_x)
+    near = shown[np.where(i == INTRUDER, j, i)]
+    draw_chains(axes, start[near], (start + reach)[near], np.abs(c["fn"])[near], colour=VERMILLION, widest=widest)
+
+
+def draw_intruder(axes, intruder, centre):
+    """The intruder as a white body with its beads and a bold outline; a cross where its shape was not stored."""
+    if "beads" in intruder:
+        beads, radius = intruder["beads"] + centre, float(np.atleast_1d(intruder["bead_radius"])[0])
+        if "outline" in intruder:
+            body = Polygon(intruder["outline"] + centre, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=3)
+            axes.add_patch(body)
+        draw_grains(axes, beads[:, 0], beads[:, 1], np.full(len(beads), radius), colour=BLACK, zorder=4)
+    axes.plot(*centre, "+", zorder=5, color=BLACK, markersize=4, markeredgewidth=0.8)
