@@ -29,6 +29,7 @@ from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import wiggle as results  # noqa: E402
+from graindrive.postproc.statistics import drift  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -134,7 +135,7 @@ def run(p, folder):
     bed = make_bed(p, vertices, clump, at, dt, grains)
 
     scene.start(p.width, float(bed["y"].max()) + 2 * p.amplitude + 10)
-    scene.add_base(p.width, 1.0, grains.density)
+    base = scene.add_base(p.width, 1.0, grains.density)
     ids = scene.add_disks(bed["x"], bed["y"], bed["r"], grains.density)
     body = scene.add_intruder(clump, *at, blocked="xzXYZ")
     drive = engines.OscillationDrive(body=body, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
@@ -142,10 +143,10 @@ def run(p, folder):
     scene.yade_loop(grains, gravity=1.0, between=[binner, drive])
     ratio = scene.set_time_step(dt, grains, 0.45)
 
-    record(p, folder, ids, body, clump, vertices, drive, binner, ratio)
+    record(p, folder, ids, base, body, clump, vertices, drive, binner, ratio)
 
 
-def record(p, folder, ids, body, clump, vertices, drive, binner, ratio):
+def record(p, folder, ids, base, body, clump, vertices, drive, binner, ratio):
     """Run in blocks, a fortieth of a period each, and keep series and frames."""
     from yade import O
 
@@ -154,16 +155,16 @@ def record(p, folder, ids, body, clump, vertices, drive, binner, ratio):
     folder.declare_series(
         t="sqrt(d/g)", x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g", contacts="-", work="rho g d^3"
     )
-    folder.write("intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d")), bead_radius=clump.bead_radius)
+    folder.write("intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d"), bead_radius=(clump.bead_radius, "d")))
     state, steps = O.bodies[body].state, max(1, round(p.time / O.dt))
     block = max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
-    start = state.pos
     frame_steps = iter(np.linspace(0, steps, p.frames).round())
-    due = next(frame_steps)
+    due, track = next(frame_steps), []
 
     def sample(done):
         nonlocal due
-        position, velocity = state.pos - start, state.vel
+        position, velocity = state.pos, state.vel
+        track.append((done * O.dt, position[1]))
         folder.append(
             t=done * O.dt,
             x=position[0],
@@ -176,37 +177,21 @@ def record(p, folder, ids, body, clump, vertices, drive, binner, ratio):
             work=drive.work,
         )
         if due is not None and done >= due:
-            keep_frame(folder, done * O.dt, ids, state)
+            folder.frame(done * O.dt, *scene.picture(ids, base, body))
             due = next(frame_steps, None)
 
     sample(0)
     timing = progress.run_blocks(steps, block, sample, grains=len(ids), label="shaking")
     folder.note(steps=timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    t, y = np.array(track).T
+    rise = drift(t, y, p.period)
     folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)
-
-
-def keep_frame(folder, t, ids, state):
-    """Store grains and contacts of this moment."""
-    from yade import O
-
-    contacts = engines.contact_table(O._sceneObj)
-    folder.frame(
-        t,
-        {**scene.grains(ids), "intruder": np.array(state.pos)[:2]},
-        dict(
-            i=contacts["i"],
-            j=contacts["j"],
-            fn=np.linalg.norm(contacts["normal_force"], axis=1),
-            ft=np.linalg.norm(contacts["tangential_force"], axis=1),
-            px=contacts["point"][:, 0],
-            py=contacts["point"][:, 1],
-        ),
-    )
+    folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, y_final=y[-1] - y[0])
 
 
 def main(**defaults):
     """Entry of this study and of its presets, which give `defaults`."""
-    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=results.figure)
+    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=results.draw)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Beds of disks around a held intruder: random insertion, settling under gravity, and the cache that keeps them."""
 
+import sys
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -103,7 +104,7 @@ def settle(recipe):
     scene.yade_loop(recipe.material, gravity=1.0)
     scene.set_time_step(recipe.dt, recipe.material, recipe.d_min / 2)
     energy = run_until_at_rest(recipe, ids, fall_time=np.sqrt(2 * float(y.max())))
-    bed = scene.grains(ids)
+    bed = scene.rows_of(ids)
     box = (0.0, recipe.width, -1.0, float(bed["y"].max()) + 1)
     deepest, i, j = engines.overlaps(box, True, np.c_[bed["x"] % recipe.width, bed["y"]], bed["r"])
     if deepest > 0.1:
@@ -124,12 +125,14 @@ def run_until_at_rest(recipe, ids, fall_time):
     block = max(1, round(1 / O.dt))
     energy = np.inf
 
+    print(f"settling a bed of {len(ids)} grains until they keep less than {recipe.rest:g} m g d each", file=sys.stderr)
+
     def at_rest(done):
         nonlocal energy
-        energy = kinetic_energy_per_grain(scene.grains(ids), recipe.material.density)
+        energy = kinetic_energy_per_grain(scene.rows_of(ids), recipe.material.density)
         return energy < recipe.rest and done * O.dt > fall_time
 
-    progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling the bed")
+    progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling (at most)")
     if not energy < recipe.rest:
         raise RuntimeError(f"the bed keeps a kinetic energy of {energy:.2g} m g d per grain, over {recipe.rest:.2g}")
     return energy
