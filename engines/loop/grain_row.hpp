@@ -1,6 +1,6 @@
 /// What the loop keeps in memory: one 64-byte row per grain, and for every pair a link, a tangential spring and a force.
 ///
-/// Every quantity that a contact needs is a sum or a difference of two rows, so a kernel subtracts whole rows first and transposes once.
+/// Every changing quantity that a contact needs is a sum or a difference of two rows, so a kernel subtracts whole rows and transposes once.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +14,8 @@ struct alignas(64) GrainRow {
 	double vx, vy;            ///< velocity, half a step behind the position [m/s]
 	double radius;            ///< [m]
 	double surface_speed;     ///< radius * spin [m/s], counter-clockwise positive
-	double inverse_radius;    ///< [1/m]
-	double inverse_mass;      ///< as a partner in m_eff [1/kg]; 0 stands for an infinite mass
+	double inverse_mass;      ///< 1/m [1/kg]; 0 stands for an infinite mass
+	double unused;
 };
 static_assert(sizeof(GrainRow) == 64, "one row, one cache line");
 
@@ -32,7 +32,7 @@ struct alignas(4 * sizeof(P)) PairForce {
 	P normal;    ///< F_n, > 0 repels [N]
 };
 
-/// Where a grain finds its pair forces, counted in forces: three pairs it owns, then three it is partner in. 0 is no pair.
+/// Where a grain finds its pair forces, in bytes from the first: three pairs it owns, then three it is partner in. 0 is no pair.
 /// A grain with more has its surplus folded into one extra force beforehand, so that summing needs no branch.
 struct ForceSlots {
 	static constexpr int owned = 3, partnered = 3;

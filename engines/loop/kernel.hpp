@@ -24,6 +24,7 @@ struct Fold {
 struct KernelData {
 	GrainRow* rows;
 	const PairLink* links;
+	const void *effective_radii, *effective_masses;  ///< of each pair [m], [kg]; double or float
 	void* slips;               ///< tangential springs [m], double or float; not read without friction
 	void* forces;              ///< PairForce<double> or <float>; forces[0] stays zero
 	const ForceSlots* slots;   ///< of free grains

@@ -6,6 +6,7 @@
 /// computed nothing will ask for grain i's old position again, and it can move at once, while its row is still in the nearest cache.
 #pragma once
 #include <algorithm>
+#include <emmintrin.h>
 
 #include "engines/loop/row_transpose.hpp"
 
@@ -17,17 +18,15 @@ struct PackForces {
 	S x, y, friction, normal, slip;
 };
 
-/// One pack of pairs: columns of row differences and sums -> forces on the owners. One division serves 1/r, R_eff and m_eff.
+/// One pack of pairs: columns of row differences and sums -> forces on the owners.
 template <class Law, class S>
-inline PackForces<S> pack_forces(const Law& law, const S column[8], const S& slip, const S& dt)
+inline PackForces<S> pack_forces(const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
 {
-	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3];
-	const S &reach = column[4], &surface_speed = column[5], &curvature = column[6], &inverse_mass = column[7];
+	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3], &reach = column[4], &surface_speed = column[5];
 	const S zero(0);
 	const S distance = sqrt(dx * dx + dy * dy);
-	const S product = curvature * inverse_mass;
-	const S inverse = S(1) / (product * distance);
-	const S n_x = dx * (product * inverse), n_y = dy * (product * inverse);
+	const S inverse = S(1) / distance;
+	const S n_x = dx * inverse, n_y = dy * inverse;
 	const S overlap = reach - distance;
 	const auto touching = overlap > zero;
 
@@ -35,13 +34,13 @@ inline PackForces<S> pack_forces(const Law& law, const S column[8], const S& sli
 	contact.overlap = max(overlap, zero);
 	contact.normal_velocity = dvx * n_x + dvy * n_y;
 	contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
-	contact.effective_radius = inverse_mass * (distance * inverse);
-	contact.effective_mass = curvature * (distance * inverse);
+	contact.effective_radius = effective_radius;
+	contact.effective_mass = effective_mass;
 	contact.dt = dt;
 
 	const auto response = law(contact, slip);
 	const S normal = select(touching, response.normal, zero), friction = select(touching, response.tangential, zero);
-	return { zero - (normal * n_x + friction * n_y), friction * n_x - normal * n_y, friction, normal, select(touching, response.slip, zero) };
+	return { -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal, select(touching, response.slip, zero) };
 }
 
 template <class Law, class P, bool Friction>
@@ -52,10 +51,11 @@ struct Body {
 	template <bool Wrapped>
 	static inline void pack(const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at)
 	{
-		S column[8];
+		S column[6];
 		Turn::template columns<Wrapped>(difference, data.links + at, column);
 		P* slips = static_cast<P*>(data.slips) + at;
-		PackForces<S> f = pack_forces(law, column, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
+		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at), mass = S::load(static_cast<const P*>(data.effective_masses) + at);
+		PackForces<S> f = pack_forces(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
 		if constexpr (Friction) f.slip.store(slips);
 		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
 	}
@@ -82,7 +82,7 @@ struct Body {
 			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0) fold(data, block);
 			move_block(data, block * grains_per_block, std::min((block + 1) * grains_per_block, n_free), fastest);
 		}
-		return { fastest[0], fastest[1] };
+		return { std::sqrt(fastest[0]), std::sqrt(fastest[1]) };
 	}
 
 private:
@@ -104,31 +104,37 @@ private:
 		}
 	}
 
+	static inline Four force_at(const char* forces, std::uint32_t bytes) { return *reinterpret_cast<const Four*>(forces + bytes); }
+
 	static inline void move_block(const KernelData& data, std::uint32_t begin, std::uint32_t end, Two& fastest)
 	{
-		const auto* forces = static_cast<const Four*>(data.forces);
+		const auto* forces = static_cast<const char*>(data.forces);
+		const ForceSlots* slots = data.slots;
+		GrainRow* rows = data.rows;
 		const Two gravity_kick = { data.gravity_x * data.kick, data.gravity_y * data.kick };
+		const Two no_speed = {}, drift = data.drift - no_speed;
 		const Four partner_sign = { -1, -1, 1, 1 };
-		const double spin_kick = data.spin_response;
+		const double kick = data.kick, spin_response = data.spin_response;
+		Two highest = fastest;
 		for (std::uint32_t g = begin; g < end; ++g) {
-			const std::uint32_t* at = data.slots[g].at;
-			const Four owned = (forces[at[0]] + forces[at[1]]) + forces[at[2]];
-			const Four partnered = (forces[at[3]] + forces[at[4]]) + forces[at[5]];
+			const std::uint32_t* at = slots[g].at;
+			const Four owned = (force_at(forces, at[0]) + force_at(forces, at[1])) + force_at(forces, at[2]);
+			const Four partnered = (force_at(forces, at[3]) + force_at(forces, at[4])) + force_at(forces, at[5]);
 			const Four total = partnered * partner_sign + owned;
-			GrainRow& row = data.rows[g];
-			const double response = row.inverse_mass * data.kick;
+			GrainRow& row = rows[g];
+			const double response = row.inverse_mass * kick;
 			Two position, velocity;
 			std::memcpy(&position, &row.x, sizeof position);
 			std::memcpy(&velocity, &row.vx, sizeof velocity);
 			const Two force = { double(total[0]), double(total[1]) };
 			velocity = velocity + (force * response + gravity_kick);
-			position = position + velocity * data.drift;
+			position = position + velocity * drift;
 			std::memcpy(&row.x, &position, sizeof position);
 			std::memcpy(&row.vx, &velocity, sizeof velocity);
-			row.surface_speed += double(total[2]) * (response * spin_kick);
-			const Two speed = velocity < 0 ? -velocity : velocity;
-			fastest = speed > fastest ? speed : fastest;
+			row.surface_speed += double(total[2]) * (response * spin_response);
+			highest = (Two)_mm_max_pd((__m128d)highest, (__m128d)(velocity * velocity));
 		}
+		fastest = highest;
 	}
 };
 

@@ -30,15 +30,15 @@ void PairList::select(const GrainRow* rows, const Box& box, double gap)
 	}
 }
 
-void PairList::lay_out(std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision kernel_precision, std::uint32_t dummy_row)
+void PairList::lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision kernel_precision, std::uint32_t dummy_row)
 {
 	precision = kernel_precision;
-	place_pairs(n_free, threads, dummy_row);
+	place_pairs(rows, n_free, threads, dummy_row);
 	fill_slots(n_free);
 	list_members(n_free, n_grains);
 }
 
-void PairList::place_pairs(std::uint32_t n_free, int threads, std::uint32_t dummy_row)
+void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threads, std::uint32_t dummy_row)
 {
 	const std::uint32_t blocks = (n_free + grains_per_block - 1) / grains_per_block;
 	const std::uint32_t room = padded(candidates.size()) + (threads + 3) * pack_alignment;
@@ -46,14 +46,21 @@ void PairList::place_pairs(std::uint32_t n_free, int threads, std::uint32_t dumm
 	place.assign(candidates.size(), 0);
 	links.assign(room, dummy);
 	slips.assign(room, 0.0);
+	effective_radii.assign(room, 0.0);
+	effective_masses.assign(room, 0.0);
 	block_pair_end.assign(blocks, 0);
 	sweeps.assign(threads, {});
 
 	std::vector<std::uint32_t> early;
 	std::uint32_t next = first_place, c = 0;
-	const auto put = [&](std::uint32_t candidate) {
-		links[next] = { candidates[candidate].first * row_bytes, candidates[candidate].second * row_bytes };
-		put_slip(next, candidates[candidate].slip);
+	const auto place_at_next = [&](std::uint32_t candidate) {
+		const Candidate& pair = candidates[candidate];
+		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
+		links[next] = { pair.first * row_bytes, pair.second * row_bytes };
+		put(effective_radii, next, a.radius * b.radius / (a.radius + b.radius));
+		const double inverse_mass = a.inverse_mass + b.inverse_mass;
+		put(effective_masses, next, inverse_mass > 0 ? 1 / inverse_mass : 0);  // two infinite masses: neither answers, so nothing is damped
+		put(slips, next, pair.slip);
 		place[candidate] = next++;
 	};
 	for (int t = 0; t < threads; ++t) {
@@ -68,7 +75,7 @@ void PairList::place_pairs(std::uint32_t n_free, int threads, std::uint32_t dumm
 				if (!candidates[c].near) continue;
 				const bool crosses = candidates[c].second < n_free && candidates[c].second >= range_end;
 				if (candidates[c].wrapped || crosses) early.push_back(c);
-				else put(c);
+				else place_at_next(c);
 			}
 			block_pair_end[b] = next;
 		}
@@ -77,7 +84,7 @@ void PairList::place_pairs(std::uint32_t n_free, int threads, std::uint32_t dumm
 	for (; c < candidates.size(); ++c)
 		if (candidates[c].near) early.push_back(c);
 	early_begin = next;
-	for (const std::uint32_t candidate : early) put(candidate);
+	for (const std::uint32_t candidate : early) place_at_next(candidate);
 	early_end = padded(next);
 }
 
@@ -91,13 +98,14 @@ void PairList::fill_slots(std::uint32_t n_free)
 		if (candidates[c].first < n_free) owned[candidates[c].first] += owned[candidates[c].first] < 255;
 		if (candidates[c].second < n_free) partnered[candidates[c].second] += partnered[candidates[c].second] < 255;
 	}
+	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
 	used_owned.assign(n_free, 0);
 	used_partnered.assign(n_free, 0);
 	slots.assign(n_free, ForceSlots {});
 	surplus.clear();
 	// A side with too many keeps its last slot for the fold of its surplus.
 	const auto give = [&](std::uint32_t grain, std::uint32_t at, std::uint8_t have, std::uint8_t& used, bool partner) {
-		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1) slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at;
+		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1) slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at * force_bytes;
 		else surplus.push_back({ grain, at, partner });
 	};
 	for (std::uint32_t c = 0; c < candidates.size(); ++c) {
@@ -113,6 +121,7 @@ void PairList::fold_surplus(std::uint32_t next_place)
 {
 	const auto before = [](const Surplus& a, const Surplus& b) { return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner; };
 	std::stable_sort(surplus.begin(), surplus.end(), before);
+	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
 	folds.clear();
 	fold_sources.clear();
 	block_fold_end.assign(block_pair_end.size(), 0);
@@ -121,7 +130,7 @@ void PairList::fold_surplus(std::uint32_t next_place)
 		Fold fold { next_place++, static_cast<std::uint32_t>(fold_sources.size()), 0, lead.partner };
 		for (; s < surplus.size() && surplus[s].grain == lead.grain && surplus[s].partner == lead.partner; ++s) fold_sources.push_back(surplus[s].place);
 		fold.end = fold_sources.size();
-		slots[lead.grain].at[(lead.partner ? ForceSlots::owned : 0) + ForceSlots::owned - 1] = fold.target;
+		slots[lead.grain].at[(lead.partner ? ForceSlots::owned : 0) + ForceSlots::owned - 1] = fold.target * force_bytes;
 		folds.push_back(fold);
 		block_fold_end[lead.grain / grains_per_block] = folds.size();
 	}
@@ -155,13 +164,13 @@ void PairList::keep_slips()
 void PairList::put_back_slips()
 {
 	for (std::uint32_t c = 0; c < place.size(); ++c)
-		if (place[c]) put_slip(place[c], candidates[c].slip);
+		if (place[c]) put(slips, place[c], candidates[c].slip);
 }
 
-void PairList::put_slip(std::uint32_t at, double slip)
+void PairList::put(AlignedVector<double>& list, std::uint32_t at, double number)
 {
-	if (precision == Precision::double_) slips[at] = slip;
-	else reinterpret_cast<float*>(slips.data())[at] = static_cast<float>(slip);
+	if (precision == Precision::double_) list[at] = number;
+	else reinterpret_cast<float*>(list.data())[at] = static_cast<float>(number);
 }
 
 double PairList::slip(std::uint32_t candidate) const
@@ -182,6 +191,8 @@ void PairList::point(KernelData& data)
 {
 	data.links = links.data();
 	data.slips = slips.data();
+	data.effective_radii = effective_radii.data();
+	data.effective_masses = effective_masses.data();
 	data.forces = forces.data();
 	data.slots = slots.data();
 	data.folds = folds.data();

@@ -21,7 +21,7 @@ public:
 
 	/// Selects the candidates whose surfaces are nearer than `gap` [m], lays them out for `threads` and points the grains' slots at them.
 	void select(const GrainRow* rows, const Box& box, double gap);
-	void lay_out(std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision, std::uint32_t dummy_row);
+	void lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision, std::uint32_t dummy_row);
 	/// Brings the tangential springs of the selected pairs back into the candidates.
 	void keep_slips();
 	void put_back_slips();  ///< and into the kernels' memory again
@@ -43,11 +43,11 @@ public:
 	double slip(std::uint32_t candidate) const;
 
 private:
-	void put_slip(std::uint32_t at, double slip);
+	void put(AlignedVector<double>& list, std::uint32_t at, double number);
 
 	Precision precision = Precision::double_;
 	AlignedVector<PairLink> links;
-	AlignedVector<double> slips;    // room for doubles; floats use half of it
+	AlignedVector<double> slips, effective_radii, effective_masses;  // room for doubles; floats use half of it
 	AlignedVector<PairForce<double>> forces;
 	AlignedVector<ForceSlots> slots;
 	std::vector<Fold> folds;
@@ -59,7 +59,7 @@ private:
 	};
 	std::vector<Surplus> surplus;
 
-	void place_pairs(std::uint32_t n_free, int threads, std::uint32_t dummy_row);
+	void place_pairs(const GrainRow* rows, std::uint32_t n_free, int threads, std::uint32_t dummy_row);
 	void fill_slots(std::uint32_t n_free);
 	void fold_surplus(std::uint32_t next_place);
 	void list_members(std::uint32_t n_free, std::uint32_t n_grains);

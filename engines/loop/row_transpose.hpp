@@ -1,4 +1,4 @@
-/// From rows to columns and back: the differences of the rows of a pack of pairs as eight packs, and a pack's forces as rows in memory.
+/// From rows to columns and back: the differences of the rows of a pack of pairs as six packs, and a pack's forces as rows in memory.
 ///
 /// `Transposer<P>` exists three times, for AVX-512, AVX2 and any processor; each file that includes this one gets the one it is compiled for.
 #pragma once
@@ -18,7 +18,7 @@ inline const double* row_at(const GrainRow* rows, std::uint32_t offset)
 constexpr Processor compiled_for = Processor::avx512;
 constexpr int parts_at_once = 2;  // one pack waits on square roots most of the time; two overlap (measured: 1.16 times the rate of one, 1.06 times that of four)
 
-/// Positions and velocities of the second row minus the first; the other four columns are sums. One row, one register.
+/// Positions and velocities of the second row minus the first; the other columns are sums. One row, one register.
 struct RowDifference {
 	const GrainRow* rows;
 	__m512d signs = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1), length, inverse_length;
@@ -55,20 +55,20 @@ struct Transposer<double> {
 	using Number = Pack<double, 8, parts_at_once>;
 
 	template <bool Wrapped>
-	static void columns(const RowDifference& difference, const PairLink* links, Number out[8])
+	static void columns(const RowDifference& difference, const PairLink* links, Number out[6])
 	{
 		for (int n = 0; n < parts_at_once; ++n) part<Wrapped>(difference, links + n * 8, out, n);
 	}
 
 	template <bool Wrapped>
-	static void part(const RowDifference& difference, const PairLink* links, Number out[8], int n)
+	static void part(const RowDifference& difference, const PairLink* links, Number out[6], int n)
 	{
-		__m512d even[4], odd[4];
+		__m512d even[4], odd[4];  // the fourth is not used, and not computed
 		transpose_lanes(difference.operator()<Wrapped>(links[0]), difference.operator()<Wrapped>(links[2]),
 			difference.operator()<Wrapped>(links[4]), difference.operator()<Wrapped>(links[6]), even);
 		transpose_lanes(difference.operator()<Wrapped>(links[1]), difference.operator()<Wrapped>(links[3]),
 			difference.operator()<Wrapped>(links[5]), difference.operator()<Wrapped>(links[7]), odd);
-		for (int q = 0; q < 4; ++q) {
+		for (int q = 0; q < 3; ++q) {
 			out[2 * q].v[n] = (Number::Vector)_mm512_unpacklo_pd(even[q], odd[q]);
 			out[2 * q + 1].v[n] = (Number::Vector)_mm512_unpackhi_pd(even[q], odd[q]);
 		}
@@ -90,13 +90,13 @@ struct Transposer<float> {
 	using Number = Pack<float, 16, parts_at_once>;
 
 	template <bool Wrapped>
-	static void columns(const RowDifference& difference, const PairLink* links, Number out[8])
+	static void columns(const RowDifference& difference, const PairLink* links, Number out[6])
 	{
 		for (int n = 0; n < parts_at_once; ++n) part<Wrapped>(difference, links + n * 16, out, n);
 	}
 
 	template <bool Wrapped>
-	static void part(const RowDifference& difference, const PairLink* links, Number out[8], int n)
+	static void part(const RowDifference& difference, const PairLink* links, Number out[6], int n)
 	{
 		__m512 a[4], b[4];
 		for (int k = 0; k < 4; ++k) {
@@ -111,10 +111,8 @@ struct Transposer<float> {
 		__m512d first[4], last[4];
 		transpose_in_lanes(a, first);
 		transpose_in_lanes(b, last);
-		for (int q = 0; q < 4; ++q) {
-			out[q].v[n] = (typename Number::Vector)first[q];
-			out[4 + q].v[n] = (typename Number::Vector)last[q];
-		}
+		for (int q = 0; q < 4; ++q) out[q].v[n] = (typename Number::Vector)first[q];
+		for (int q = 0; q < 2; ++q) out[4 + q].v[n] = (typename Number::Vector)last[q];
 	}
 
 	static void store(const Number& x, const Number& y, const Number& friction, const Number& normal, PairForce<float>* to)
@@ -173,9 +171,9 @@ struct Transposer {
 	using Number = Pack<P, vector_bytes / sizeof(P), 1>;
 
 	template <bool Wrapped>
-	static void columns(const RowDifference& difference, const PairLink* links, Number out[8])
+	static void columns(const RowDifference& difference, const PairLink* links, Number out[6])
 	{
-		for (int column = 0; column < 8; ++column)
+		for (int column = 0; column < 6; ++column)
 			for (int lane = 0; lane < Number::width; ++lane) out[column].v[0][lane] = P(difference.template operator()<Wrapped>(links[lane], column));
 	}
 

@@ -56,13 +56,13 @@ void Stepper::arrange_rows()
 	for (std::uint32_t at = 0; at < n_grains; ++at) {
 		const Grain& g = scene.grains[index_of[at]];
 		row_of[index_of[at]] = at;
-		rows[at] = { g.x, g.y, g.vx, g.vy, g.radius, g.radius * g.spin, 1 / g.radius, 1 / g.mass };
+		rows[at] = { g.x, g.y, g.vx, g.vy, g.radius, g.radius * g.spin, 1 / g.mass, 0 };
 		if (at < n_free) largest_free_radius = std::max(largest_free_radius, g.radius);
 		sum += 2 * g.radius;
 	}
 	typical_diameter = sum / n_grains;
-	rows[n_grains] = { 0, 0, 0, 0, typical_diameter, 0, 1 / typical_diameter, 1 };  // a pair that never touches fills up packs
-	rows[n_grains + 1] = { 10 * typical_diameter, 0, 0, 0, typical_diameter, 0, 1 / typical_diameter, 1 };
+	rows[n_grains] = { 0, 0, 0, 0, typical_diameter, 0, 1, 0 };  // a pair that never touches fills up packs
+	rows[n_grains + 1] = { 10 * typical_diameter, 0, 0, 0, typical_diameter, 0, 1, 0 };
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) place_members(b);
 }
 
@@ -130,7 +130,7 @@ void Stepper::select()
 	if (searches > 0 && moved_since_search > skin - gap) moved_since_search = 2 * farthest_moved();
 	if (searches == 0 || !(moved_since_search <= skin - gap)) search();
 	pairs.select(rows.data(), scene.box, gap);
-	pairs.lay_out(n_free, n_grains, scene.threads, scene.precision, n_grains);
+	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
 	pairs.point(data);
 	data.rows = rows.data();
 	moved_since_selection = 0;

@@ -29,7 +29,7 @@ void Stepper::velocities(double* xy) const
 
 void Stepper::spins(double* spin) const
 {
-	for (std::size_t i = 0; i < size(); ++i) spin[i] = rows[row_of[i]].surface_speed * rows[row_of[i]].inverse_radius;
+	for (std::size_t i = 0; i < size(); ++i) spin[i] = rows[row_of[i]].surface_speed / rows[row_of[i]].radius;
 }
 
 std::vector<Contact> Stepper::contacts() const
