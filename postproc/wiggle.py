@@ -1,5 +1,7 @@
 """The figure of the wiggle study: the intruder's height over time, and the bed with speeds and force chains."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import PowerNorm
@@ -51,7 +53,8 @@ def draw_height(axes, run):
 def title(run):
     """Return in words what shape is driven how."""
     p = run.parameters
-    shape = NAMES.get(str(p.get("shape", "")), str(p.get("shape", "intruder")))
+    shape = str(p.get("shape", "intruder"))
+    shape = NAMES.get(shape, Path(shape).stem).replace("$", r"\$")
     return (
         rf"{shape}, $A$ = {p['amplitude']:g} $d$, $T$ = {p['period']:g} $\sqrt{{d/g}}$, $\mu$ = {p.get('mu', np.nan):g}"
     )
@@ -96,8 +99,10 @@ def draw_period(axes, period):
 def view(run, bed):
     """Return [[left, bottom], [width, height]] of the picture: the whole bed, or `VIEW` around the intruder."""
     x, y = run.at(bed.t, "x", "y")
-    bottom, top = np.min(bed.grains["y"] - bed.grains["r"]) - 0.5, np.max(bed.grains["y"] + bed.grains["r"]) + 1
-    size = np.minimum(VIEW, [float(run.parameters["width"]), top - bottom])
+    bottom = np.min(bed.grains["y"] - bed.grains["r"]) - 0.5
+    top = np.quantile(bed.grains["y"] + bed.grains["r"], 0.98) + 3  # a few grains may fly
+    width = min(VIEW[0], float(run.parameters["width"]))
+    size = np.array([width, min(VIEW[1], top - bottom, 1.3 * width)])
     left = x - size[0] / 2 if size[0] < float(run.parameters["width"]) else 0.0
     return np.array([[left, np.clip(y - size[1] / 2, bottom, top - size[1])], size])
 
