@@ -103,12 +103,21 @@ private:
 		const std::size_t at = declared(member, offset);
 		++facts_;
 		if (probe_.bytes(start + at, sentinel.size()) == sentinel) return;
-		const std::size_t found = probe_.bytes(start, malloc_usable_size(reinterpret_cast<void*>(start))).find(sentinel, 24);
+		const std::size_t found = memory_of(object).find(sentinel, 24);
+		misplaced(member, at, found);
+	}
+	[[noreturn]] static void misplaced(const string& member, std::size_t at, std::size_t found)
+	{
 		std::ostringstream message;
 		message << member << " is expected at byte " << at << " but ";
 		if (found == string::npos) message << "its value was not found in the object";
 		else message << "was found at byte " << found;
 		refuse(message.str());
+	}
+	string memory_of(const py::object& object) const
+	{
+		const Address start = address_of(object);
+		return probe_.bytes(start, malloc_usable_size(reinterpret_cast<void*>(start)));
 	}
 
 	/// Sets an attribute by YADE's own means (which reaches read-only ones too), then looks for it.
@@ -136,10 +145,28 @@ private:
 		const Integer value = static_cast<Integer>(0x11223300 + ++sentinel_);
 		attribute(cls, name, object, offset, py::object(value), value);
 	}
-	/// Both values, for a single byte is easily right by chance.
-	void boolean(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	/// A single byte is easily right by chance: it must be the one that changes when YADE changes the flag.
+	template <class Set>
+	void flag(const string& member, const py::object& object, std::size_t offset, Set&& set)
 	{
-		for (const bool value : { false, true }) attribute(cls, name, object, offset, py::object(value), value);
+		const std::size_t at = declared(member, offset);
+		set(false);
+		const string cleared = memory_of(object);
+		set(true);
+		const string raised = memory_of(object);
+		++facts_;
+		if (at < raised.size() && !cleared[at] && raised[at] == 1) return;
+		std::size_t found = 24;
+		while (found < raised.size() && !(cleared[found] == 0 && raised[found] == 1)) ++found;
+		misplaced(member, at, found < raised.size() ? found : string::npos);
+	}
+	void flag(const string& cls, const string& name, const py::object& object, std::size_t offset)
+	{
+		flag(cls + "." + name, object, offset, [&](bool value) {
+			py::dict update;
+			update[name] = value;
+			object.attr("updateAttrs")(update);
+		});
 	}
 	void pointer(const string& member, const py::object& object, std::size_t offset, const py::object& target)
 	{
@@ -159,13 +186,19 @@ private:
 	template <class T>
 	void size(const char* cls)
 	{
-		py::object object = make(cls);
-		const std::size_t usable = malloc_usable_size(reinterpret_cast<void*>(address_of(object)));
 		const std::size_t expected = declared(string(cls) + ".size", sizeof(T));
+		std::vector<py::object> objects;
+		std::size_t block = string::npos;
 		++facts_;
-		if (expected <= usable && usable < expected + 16) return; // the allocator rounds up to 8 modulo 16
+		// A block is the size rounded up to 8 modulo 16; one cut from a recycled block may have 16 bytes more, hence several tries.
+		for (int attempt = 0; attempt < 64; ++attempt) {
+			objects.push_back(make(cls));
+			block = std::min(block, malloc_usable_size(reinterpret_cast<void*>(address_of(objects.back()))));
+			if (block < expected) break;
+			if (block < expected + 16) return;
+		}
 		std::ostringstream message;
-		message << cls << " is expected to take " << expected << " bytes but has a block of " << usable;
+		message << cls << " is expected to take " << expected << " bytes but has a block of " << block;
 		refuse(message.str());
 	}
 	/// Only classes that engines derive from: there a wrong size would put our members over YADE's.
@@ -188,7 +221,7 @@ private:
 	{
 		py::object engine = make("Engine");
 		integer<int>("Engine", "ompThreads", engine, offsetof(yade::Engine, ompThreads));
-		boolean("Engine", "dead", engine, offsetof(yade::Engine, dead));
+		flag("Engine", "dead", engine, offsetof(yade::Engine, dead));
 		label("Engine", offsetof(yade::Engine, label));
 		pointer("Engine.scene", engine, offsetof(yade::Engine, scene), py::import("yade").attr("O").attr("_sceneObj"));
 		label("LawFunctor", offsetof(yade::LawFunctor, label));
@@ -235,9 +268,19 @@ private:
 	/// An empty std::map: no root, leftmost and rightmost point at the map's own header, no elements.
 	void empty_map(const string& member, const py::object& object, std::size_t offset)
 	{
-		const Address header = address_of(object) + declared(member, offset) + 8;
-		const Address expected[4] = { 0, header, header, 0 };
-		holds(member, object, offset + 16, raw(expected));
+		const string memory = memory_of(object);
+		const Address start = address_of(object);
+		const auto is_map = [&](std::size_t at) {
+			const Address header = start + at + 8;
+			const Address expected[4] = { 0, header, header, 0 };
+			return at + 48 <= memory.size() && memory.compare(at + 16, sizeof expected, raw(expected)) == 0;
+		};
+		const std::size_t at = declared(member, offset);
+		++facts_;
+		if (is_map(at)) return;
+		std::size_t found = 24;
+		while (found + 48 <= memory.size() && !is_map(found)) found += 8;
+		misplaced(member, at, is_map(found) ? found : string::npos);
 	}
 
 	void interaction()
@@ -247,7 +290,8 @@ private:
 		integer<int>("Interaction", "id1", contact, offsetof(yade::Interaction, id1));
 		integer<int>("Interaction", "id2", contact, offsetof(yade::Interaction, id2));
 #endif
-		boolean("Interaction", "isActive", contact, offsetof(yade::Interaction, isActive));
+		flag("Interaction.isActive", contact, offsetof(yade::Interaction, isActive),
+		     [&](bool value) { contact.attr("isActive") = value; }); // no archived attribute, so updateAttrs does not know it
 		integer<long>("Interaction", "iterMadeReal", contact, offsetof(yade::Interaction, iterMadeReal));
 		contact.attr("geom") = geom;
 		contact.attr("phys") = phys;
@@ -278,7 +322,7 @@ private:
 		integer<long>("Scene", "iter", scene, offsetof(yade::Scene, iter));
 		integer<long>("Scene", "stopAtIter", scene, offsetof(yade::Scene, stopAtIter));
 		integer<int>("Scene", "subStep", scene, offsetof(yade::Scene, subStep));
-		boolean("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic));
+		flag("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic));
 		points_to("Scene.bodies", scene, offsetof(yade::Scene, bodies), "vtable for yade::BodyContainer");
 		points_to("Scene.interactions", scene, offsetof(yade::Scene, interactions), "vtable for yade::InteractionContainer");
 		engine_list();
