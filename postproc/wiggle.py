@@ -39,7 +39,7 @@ def draw_height(axes, run):
     """Height over its start against time, cycle means, the line of the fitted rise rate, and the drive's period."""
     t, y = run.series["t"], run.series["y"] - run.series["y"][:1]
     period = float(run.parameters["period"])
-    axes.plot(t, y, color=GREY, linewidth=0.5, label="intruder")
+    axes.plot(t, y, color="#888888", linewidth=0.6, label="intruder")
     found = drift(t, y, period)
     axes.plot(found.cycle_t, found.cycle_y, color=BLUE, label="mean of a cycle")
     if np.isfinite(found.rate):
@@ -71,9 +71,9 @@ def draw_rate(axes, found):
 def with_error(value, error):
     """Return "0.0123 ± 0.0005" with as many digits as the error allows, two of its own."""
     if not np.isfinite(error) or error <= 0:
-        return f"{value:.3g}"
+        return f"{value:.3g}".replace("-", "−")
     decimals = int(np.clip(1 - np.floor(np.log10(error)), 0, 8))
-    return f"{value:.{decimals}f} ± {error:.{decimals}f}"
+    return f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", "−")
 
 
 def draw_period(axes, period):

@@ -127,7 +127,7 @@ def test_the_figure_shows_grains_chains_and_intruder(run_folder, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "value, error, words", [(0.01234, 0.0005, "0.01234 ± 0.00050"), (-3.2, 0.4, "-3.20 ± 0.40"), (1.5, 0, "1.5")]
+    "value, error, words", [(0.01234, 0.0005, "0.01234 ± 0.00050"), (-3.2, 0.4, "−3.20 ± 0.40"), (1.5, 0, "1.5")]
 )
 def test_numbers_carry_the_digits_that_their_error_allows(value, error, words):
     assert wiggle.with_error(value, error) == words

@@ -1,0 +1,55 @@
+"""Stop signals become one exception: at once, after a protected block, and not where they were ignored from the start."""
+
+import os
+import signal
+
+import pytest
+
+from graindrive import signals
+from graindrive.errors import Interrupted
+
+
+@pytest.mark.parametrize("number", signals.STOP_SIGNALS)
+def test_a_signal_raises_at_once_and_handlers_come_back(number):
+    before = signal.getsignal(number)
+    with pytest.raises(Interrupted) as caught, signals.handled():
+        os.kill(os.getpid(), number)
+        pytest.fail("the line after the signal was reached")
+    assert caught.value.exit_code == 128 + number and signal.getsignal(number) is before
+
+
+def test_a_protected_block_ends_before_the_signal_takes_effect():
+    done = []
+    with pytest.raises(Interrupted), signals.handled():
+        with signals.deferred():
+            with signals.deferred():
+                os.kill(os.getpid(), signal.SIGTERM)
+                done.append("inner")
+            done.append("outer")
+        pytest.fail("the signal must be raised at the end of the outer block")
+    assert done == ["inner", "outer"]
+
+
+def test_an_error_in_a_protected_block_is_not_hidden():
+    with pytest.raises(OSError), signals.handled():
+        with signals.deferred():
+            raise OSError
+    with signals.handled():
+        signals.check()
+
+
+def test_a_study_does_not_swallow_it_by_accident():
+    with pytest.raises(Interrupted), signals.handled():
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        except Exception:
+            pytest.fail("an `except Exception` must not catch it")
+
+
+def test_ignored_signals_stay_ignored():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with signals.handled():
+            os.kill(os.getpid(), signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
