@@ -17,6 +17,7 @@ namespace {
 constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead beside one misses it by 0.1 % of its radius [rad]
 constexpr Real largest_gap =
 	2.0;  // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
+constexpr Real degeneracy = 1e-9;  // beads may stand this part of their radius off the outline where CGAL needs a nudge [-]
 constexpr Real step_slack = 1e-9;  // a step may pass the asked one by round-off, or 6 / 0.5 would give 13 beads [-]
 
 void require(bool holds, const char* rule, Real got)
@@ -106,6 +107,25 @@ void require_covered(const Outline& outline, const Points& centres, Real bead_ra
 	}
 }
 
+bool stay_inside(const Outline& outline, const Points& centres, Real bead_radius)
+{
+	return std::all_of(centres.begin(), centres.end(),
+		[&](const Vector2r& centre) { return distance_to(outline, centre) >= bead_radius * (1 - degeneracy); });
+}
+
+/// CGAL's offset may go wrong if an edge shrinks to nothing at just this distance, as on a tooth exactly one bead wide.
+Points inside(const Outline& outline, Real bead_radius, Real longest_step)
+{
+	for (const Real distance : { bead_radius, bead_radius * (1 + degeneracy) }) {
+		const Points centres = along(from_a_corner(inset(outline, distance)), longest_step);
+		if (stay_inside(outline, centres, bead_radius)) return centres;
+	}
+	std::ostringstream message;
+	message << "outline must let beads of diameter " << 2 * bead_radius
+			<< " roll along its inside, but no inset was found; change the bead diameter a little";
+	throw std::invalid_argument(message.str());
+}
+
 }  // namespace
 
 Points beads(const Outline& outline, Real bead_diameter, Real spacing)
@@ -115,7 +135,7 @@ Points beads(const Outline& outline, Real bead_diameter, Real spacing)
 		spacing);
 	const Real radius = bead_diameter / 2, longest_step = spacing * bead_diameter;
 	if (outline.is_disk()) return ring(outline, radius, longest_step);
-	const Points centres = along(from_a_corner(inset(outline, radius)), longest_step);
+	const Points centres = inside(outline, radius, longest_step);
 	require_covered(outline, centres, radius);
 	return centres;
 }

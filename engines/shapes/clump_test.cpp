@@ -137,6 +137,13 @@ TEST(Beads, stay_inside_random_stars_and_reach_their_corners)
 	EXPECT_GT(made, 200);  // most stars are thick enough
 }
 
+TEST(Beads, stay_inside_teeth_exactly_one_bead_wide)
+{
+	const Outline comb({ { 0, 0 }, { 5, 0 }, { 5, 3 }, { 4, 3 }, { 4, 2 }, { 3, 2 }, { 3, 3 }, { 2, 3 }, { 2, 2 }, { 1, 2 },
+		{ 1, 3 }, { 0, 3 } });
+	for (const Real bead : { 1.0, 0.5 }) expect_envelope(comb, beads(comb, bead, 0.5), bead / 2 * (1 - 1e-9));
+}
+
 TEST(Beads, refuse_shapes_that_are_too_thin_for_them)
 {
 	EXPECT_TRUE(mentions(complaint([] { beads(outline_of("wide", { 9, 0.4 }), 0.5); }), "not one bead fits"));

@@ -1,157 +1,17 @@
-/// Checks and repairs of an outline; whether edges cross is decided by CGAL's exact predicates.
+/// Polygons and circles, and how they move.
 #include "engines/shapes/outline.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_2_algorithms.h>
-
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+#include "engines/shapes/outline_checks.hpp"
 
 namespace graindrive::shapes {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-constexpr Real round_off = 1e-12;  // of the extent: below it, vertices are one point and edges one line [-]
 constexpr int drawn_vertices = 360;
-
-/// A vertex with its index in what the caller gave, so that a message after repairs still points at the right line.
-struct Corner {
-	Vector2r at;
-	std::size_t index;
-};
-using Corners = std::vector<Corner>;
-
-std::string name(const Corner& corner) { return vertex_name(corner.index, corner.at); }
-
-Real cross(const Vector2r& a, const Vector2r& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-Corners numbered(const Points& vertices)
-{
-	Corners corners;
-	for (std::size_t i = 0; i < vertices.size(); ++i) {
-		corners.push_back({ vertices[i], i });
-		if (!vertices[i].allFinite())
-			throw std::invalid_argument(
-				"outline vertices must be finite numbers, got " + name(corners.back()) + "; correct or remove it");
-	}
-	return corners;
-}
-
-Real extent_of(const Corners& corners)
-{
-	Eigen::AlignedBox<Real, 2> box;
-	for (const Corner& corner : corners) box.extend(corner.at);
-	return corners.empty() ? 0 : box.sizes().maxCoeff();
-}
-
-Corners without_repeats(const Corners& corners, Real tolerance)
-{
-	Corners kept;
-	for (const Corner& corner : corners)
-		if (kept.empty() || (corner.at - kept.back().at).norm() > tolerance) kept.push_back(corner);
-	while (kept.size() > 1 && (kept.back().at - kept.front().at).norm() <= tolerance) kept.pop_back();
-	return kept;
-}
-
-/// On the straight way from a to c, and not a point where the outline turns back on itself.
-bool on_the_way(const Vector2r& a, const Vector2r& b, const Vector2r& c, Real tolerance)
-{
-	return std::abs(cross(b - a, c - a)) <= tolerance * (c - a).norm() && (b - a).dot(c - b) > 0;
-}
-
-Corners without_collinear(const Corners& corners, Real tolerance)
-{
-	Corners kept;
-	for (const Corner& corner : corners) {
-		while (kept.size() > 1 && on_the_way(kept[kept.size() - 2].at, kept.back().at, corner.at, tolerance)) kept.pop_back();
-		kept.push_back(corner);
-	}
-	while (kept.size() > 2 && on_the_way(kept[kept.size() - 2].at, kept.back().at, kept.front().at, tolerance)) kept.pop_back();
-	while (kept.size() > 2 && on_the_way(kept.back().at, kept[0].at, kept[1].at, tolerance)) kept.erase(kept.begin());
-	return kept;
-}
-
-/// Width across the line from the first corner to the one farthest from it: zero when all lie on one line.
-Real breadth(const Corners& corners)
-{
-	const Vector2r origin = corners.front().at;
-	Vector2r along = Vector2r::Zero();
-	for (const Corner& corner : corners)
-		if ((corner.at - origin).norm() > along.norm()) along = corner.at - origin;
-	Real widest = 0;
-	for (const Corner& corner : corners) widest = std::max(widest, std::abs(cross(along, corner.at - origin)) / along.norm());
-	return widest;
-}
-
-Kernel::Point_2 cgal(const Corner& corner) { return { corner.at.x(), corner.at.y() }; }
-
-/// Neighbouring edges share one corner; they meet elsewhere only if the outline turns back on itself there.
-bool turns_back(const Corner& a, const Corner& b, const Corner& c)
-{
-	return CGAL::collinear(cgal(a), cgal(b), cgal(c)) && (b.at - a.at).dot(c.at - b.at) < 0;
-}
-
-/// Names the first two edges that meet; called only once CGAL has found that some do.
-[[noreturn]] void throw_crossing(const Corners& corners)
-{
-	const std::size_t n = corners.size();
-	const auto edge = [&](std::size_t i) { return Kernel::Segment_2(cgal(corners[i]), cgal(corners[(i + 1) % n])); };
-	const std::string way_out = "; list the vertices in order round the shape, each edge touching only its neighbours";
-	for (std::size_t i = 0; i < n; ++i) {
-		if (turns_back(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]))
-			throw std::invalid_argument(
-				"outline must not cross or touch itself, but turns back at " + name(corners[(i + 1) % n]) + way_out);
-		for (std::size_t j = i + 2; j < n; ++j) {
-			if ((j + 1) % n == i || !CGAL::do_intersect(edge(i), edge(j))) continue;
-			throw std::invalid_argument("outline must not cross or touch itself, but the edge from " + name(corners[i]) +
-										" meets the edge from " + name(corners[j]) + way_out);
-		}
-	}
-	throw std::invalid_argument("outline must not cross or touch itself" + way_out);
-}
-
-void require_simple(const Corners& corners)
-{
-	std::vector<Kernel::Point_2> points;
-	for (const Corner& corner : corners) points.push_back(cgal(corner));
-	if (!CGAL::is_simple_2(points.begin(), points.end(), Kernel())) throw_crossing(corners);
-}
-
-void require_three(const Corners& corners)
-{
-	if (corners.size() >= 3) return;
-	std::ostringstream message;
-	message << "outline needs at least 3 different vertices, got " << corners.size();
-	if (!corners.empty()) message << ", the first being " << name(corners.front());
-	throw std::invalid_argument(message.str() + "; add vertices");
-}
-
-Real twice_area(const Corners& corners)
-{
-	Real sum = 0;
-	for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-		sum += cross(corners[i].at - corners[0].at, corners[i + 1].at - corners[0].at);
-	return sum;
-}
-
-Corners checked(const Points& vertices)
-{
-	Corners corners = numbered(vertices);
-	const Real tolerance = round_off * extent_of(corners);
-	corners = without_repeats(corners, tolerance);
-	require_three(corners);
-	if (breadth(corners) <= tolerance)
-		throw std::invalid_argument("outline must enclose an area, but all its vertices lie on one line through " +
-									name(corners.front()) + "; move one off the line");
-	corners = without_collinear(corners, tolerance);
-	require_simple(corners);
-	if (twice_area(corners) < 0) std::reverse(corners.begin(), corners.end());
-	return corners;
-}
 
 }  // namespace
 
@@ -162,10 +22,7 @@ std::string vertex_name(std::size_t index, const Vector2r& at)
 	return text.str();
 }
 
-Outline::Outline(const Points& vertices)
-{
-	for (const Corner& corner : checked(vertices)) vertices_.push_back(corner.at);
-}
+Outline::Outline(const Points& vertices) : vertices_(checked_polygon(vertices)) {}
 
 Outline Outline::disk(Real diameter)
 {
