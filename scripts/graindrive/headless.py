@@ -17,6 +17,9 @@ from .errors import Interrupted, UsageError, one_line
 from .run_folder import RunFolder
 from .run_remains import AlreadyComplete
 
+# Before anything imports matplotlib: its font list belongs in our cache, not in the home.
+os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
+
 
 def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
     """Run a study as a command and end the program as a command should.
@@ -127,8 +130,7 @@ def socket_table(name):
 
 
 def leave_nothing_behind():
-    """Have YADE's folder below /tmp removed at exit, and matplotlib's font list kept in our cache, not in the home."""
-    os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
+    """Have YADE's folder below /tmp removed at exit."""
     if "yade" in sys.modules:
         from yade import O
 

@@ -1,0 +1,150 @@
+"""The wiggle study, shrunk: as a command in batch mode, and its bed."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from graindrive import engines, packing
+from graindrive.material import HertzHistoryMaterial
+
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
+TINY = ["scale=smoke", "width=22", "height=14", "depth=6", "amplitude=1", "time=0.5", "period=0.5", "frames=1"]
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """A home and a cache of its own, shared by the runs of this file."""
+    return tmp_path_factory.mktemp("home")
+
+
+def yade(home, study, *keys, folder=None):
+    """Run a study headless, as a person would, from `folder`; return the finished process."""
+    environment = {**os.environ, "HOME": str(home), "GRAINDRIVE_CACHE": str(home / "cache")}
+    command = ["yade", "-n", "-x", str(STUDIES / study), *keys]
+    return subprocess.run(command, cwd=folder or home, env=environment, capture_output=True, text=True, timeout=600)
+
+
+def files_below(folder):
+    """Every file below a folder, as paths relative to it."""
+    return sorted(str(path.relative_to(folder)) for path in Path(folder).rglob("*") if path.is_file())
+
+
+def test_a_run_leaves_one_complete_folder_and_nothing_else(home, tmp_path):
+    done = yade(home, "wiggle_triangle.py", *TINY, "out=result", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert files_below(tmp_path) == ["result/" + name for name in ("figure.pdf", "figure.png", "run.h5", "summary.json")]
+    # YADE's program makes IPython's profile before it runs any script; all else is our cache.
+    assert [name for name in files_below(home) if not name.startswith(("cache/", ".ipython/"))] == []
+    summary = json.loads((tmp_path / "result/summary.json").read_text())
+    assert summary["shape"] == "triangle" and summary["steps"] == 1000 and 0 < summary["dt_over_critical"] < 1
+    assert set(summary) >= {"rise_rate", "rise_rate_err", "y_final", "amplitude", "period", "particle_steps_per_second", "n_grains", "wall_s"}
+
+
+def test_imposed_x_is_exact_and_y_is_free(home, tmp_path):
+    assert yade(home, "wiggle_triangle.py", *TINY, "out=result", folder=tmp_path).returncode == 0
+    with h5py.File(tmp_path / "result/run.h5") as file:
+        t, x, y, vy = (file["series"][name][:] for name in ("t", "x", "y", "vy"))
+    # Round-off of positions of 11 d: a few times 2e-15.
+    assert np.abs(x - x[0] - np.sin(2 * np.pi * t / 0.5)).max() < 1e-13
+    assert np.ptp(y) > 1e-3 and np.ptp(vy) > 1e-3
+
+
+def test_the_same_seed_gives_the_same_run_and_another_seed_another(home, tmp_path):
+    track = {}
+    for name, seed in (("a", 3), ("b", 3), ("c", 4)):
+        done = yade(home, "wiggle.py", *TINY, "shape=disk", f"seed={seed}", f"out={name}", folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        with h5py.File(tmp_path / name / "run.h5") as file:
+            track[name] = file["series/y"][:]
+    assert np.array_equal(track["a"], track["b"])
+    assert not np.array_equal(track["a"], track["c"])
+
+
+def test_an_outline_from_a_file_is_an_intruder(home, tmp_path):
+    (tmp_path / "kite.csv").write_text("x,y\n0,-3\n3,0\n0,4\n-3,0\n")
+    done = yade(home, "wiggle.py", *TINY, "shape=kite.csv", "out=result", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "result/run.h5") as file:
+        assert np.ptp(file["intruder/outline"][:], axis=0) == pytest.approx([6, 7])
+
+
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        ("perod=3", "did you mean period?"),
+        ("period=soon", "a number > 0"),
+        ("period=0", "a number > 0"),
+        ("width=10", "raise width or lower amplitude"),
+        ("height=7", "raise height or lower depth"),
+        ("depth=1", "raise depth"),
+        ("dt_factor=100", "lower dt_factor"),
+        ("shape=hexagram", "shape must be one of"),
+        ("shape=missing.csv", "missing.csv"),
+        ("out=/proc/nowhere/run", "give out="),
+    ],
+)
+def test_bad_input_is_one_line_exit_2_and_nothing_written(home, tmp_path, given, said):
+    before = files_below(home)
+    done = yade(home, "wiggle_triangle.py", *[key for key in TINY if key.split("=")[0] != given.split("=")[0]], given, folder=tmp_path)
+    yades = ("Running script", "Warning: no X", "TCP python prompt")  # said before any script runs
+    own_lines = [line for line in done.stderr.splitlines() if not line.startswith(yades)]
+    assert done.returncode == 2
+    assert len(own_lines) == 1 and said in own_lines[0], done.stderr
+    assert files_below(tmp_path) == [] and files_below(home) == before
+
+
+def bed_recipe(**changes):
+    clump = engines.clump_of(engines.outline_of("square", (3.0,)), 0.5, 9.0)
+    outline = np.array(engines.outline_of("square", (3.0,)).vertices)
+    at = np.array([6.0, 5.0])
+    values = dict(
+        width=12.0,
+        height=10.0,
+        d_min=0.9,
+        d_max=1.1,
+        material=HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, 0.1, 1.0),
+        beads=tuple(map(tuple, clump.beads + at)),
+        bead_radius=clump.bead_radius,
+        outline=tuple(map(tuple, outline + at)),
+        outline_area=9.0,
+        dt=5e-4,
+        rest=1e-3,
+        seed=1,
+    )
+    return packing.BedRecipe(**{**values, **changes})
+
+
+def test_a_bed_rests_around_the_held_body_without_deep_overlaps(monkeypatch, tmp_path):
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path))
+    bed = packing.settled_bed(bed_recipe())
+    assert bed["kinetic_energy"] < 1e-3
+    # Hertz under the weight of ten layers: delta = (10/(K_n sqrt(R_eff)))^(2/3) ~ 5e-4 d; ten times that for the load on chains.
+    assert bed["deepest_overlap"] < 5e-3 / 0.45
+    beads = np.array(bed_recipe().beads)
+    gap = np.hypot(bed["x"][:, None] - beads[:, 0], bed["y"][:, None] - beads[:, 1]) - bed["r"][:, None] - 0.25
+    assert gap.min() > -5e-3
+    inside = (np.abs(bed["x"] - 6) < 1.2) & (np.abs(bed["y"] - 5) < 1.2)
+    assert not inside.any()
+    assert bed["y"].min() > 0.5  # nothing fell through the base
+
+
+def test_the_cache_gives_the_same_bed_back_and_knows_every_parameter(monkeypatch, tmp_path):
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path))
+    first = packing.settled_bed(bed_recipe())
+    monkeypatch.setattr(packing, "settle", lambda recipe: pytest.fail("the bed was built twice"))
+    again = packing.settled_bed(bed_recipe())
+    assert all(np.array_equal(first[name], again[name]) for name in first)
+    with pytest.raises(pytest.fail.Exception):
+        packing.settled_bed(bed_recipe(seed=2))
+
+
+def test_a_bed_without_room_is_refused():
+    with pytest.raises(Exception, match="no room for grains"):
+        packing.insert(bed_recipe(height=0.5))
+
+
