@@ -20,19 +20,15 @@ ContactSource& SceneContacts::of(yade::Scene* scene)
 	return *this;
 }
 
-/// A clump keeps its members to itself; they carry its id. The scan is repeated when the number of bodies has changed.
+/// Asked anew every step: members may be erased, released or added.
 const std::vector<int>& SceneContacts::members_of(int body)
 {
-	const auto& bodies = *scene_->bodies;
-	if (body == body_ && bodies.size() == bodies_ && bodies.exists(members_.front())) return members_;
 	const yade::Body& driven = body_of(*scene_, body, "contacts");
 	members_.clear();
 	if (!driven.isClump()) members_.push_back(body);
 	else
-		for (std::size_t id = 0; id < bodies.size(); ++id)
-			if (bodies.exists(int(id)) && bodies[id]->clumpId == body && int(id) != body) members_.push_back(int(id));
-	body_ = body;
-	bodies_ = bodies.size();
+		for (const auto& [id, place] : static_cast<const yade::Clump&>(*driven.shape).members)
+			if (scene_->bodies->exists(id)) members_.push_back(id);
 	if (members_.empty()) throw std::runtime_error("clump " + std::to_string(body) + " has no members");
 	return members_;
 }

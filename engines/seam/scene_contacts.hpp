@@ -20,8 +20,6 @@ public:
 
 private:
 	yade::Scene* scene_ = nullptr;
-	int body_ = -1;
-	std::size_t bodies_ = 0;
 	std::vector<int> members_;
 };
 

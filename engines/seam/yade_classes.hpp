@@ -117,6 +117,16 @@ public:
 	Real radius;
 };
 
+/// The shape of a clump's body: its members' ids, each with its place in the clump.
+class Clump : public Shape {
+public:
+	struct Place {
+		Vector3r position;
+		Real orientation[4];
+	};
+	std::map<int, Place> members;
+};
+
 /// Position, velocity and inertia of a body.
 class State : public IndexableLayout {
 	char references_and_mutex_[56];
