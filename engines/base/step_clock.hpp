@@ -7,7 +7,7 @@ namespace graindrive {
 /// Time since the first reading, as (steps since the anchor) x dt + (time at the anchor).
 ///
 /// O.time sums dt and is off by ~1e-12 of itself after ten million steps; this product is exact to round-off. The anchor moves
-/// when dt changes and when the step count jumps back (O.resetTime, a new scene).
+/// when dt changes and when the step count jumps back (O.resetTime): time then goes on from the end of the last step.
 struct StepClock {
 	long anchor_step = -1; ///< step of the anchor; -1 before the first reading
 	Real anchor_time = 0;  ///< time at the anchor [s]
@@ -21,7 +21,7 @@ struct StepClock {
 	{
 		const bool jumped_back = step < last_step;
 		if (!started() || present_dt != dt || jumped_back) {
-			const Real reached = started() ? anchor_time + Real((jumped_back ? last_step : step) - anchor_step) * dt : 0;
+			const Real reached = started() ? anchor_time + Real((jumped_back ? last_step + 1 : step) - anchor_step) * dt : 0;
 			anchor_step = step;
 			anchor_time = reached;
 			dt = present_dt;

@@ -1,5 +1,7 @@
 /// What the drives share: a clock that does not drift, and the force, torque and work between the driven bodies and the grains.
 #pragma once
+#include <boost/smart_ptr/weak_ptr.hpp>
+
 #include "engines/base/step_clock.hpp"
 #include "engines/seam/registered.hpp"
 #include "engines/seam/scene_contacts.hpp"
@@ -38,9 +40,10 @@ public:
 	Real anchorTime = 0, anchorDt = 0;
 
 protected:
-	/// Advances the clock; true at the very first step, when a drive takes its origin.
+	/// Advances the clock; true at the very first step in a scene, when a drive takes its origin.
 	bool begins()
 	{
+		settle_in();
 		StepClock clock { anchorStep, anchorTime, anchorDt, lastStep };
 		const bool first = !clock.started();
 		elapsed = clock.at(this->scene->iter, this->scene->dt);
@@ -71,7 +74,19 @@ protected:
 	}
 
 private:
+	/// Origin and time belong to one scene: in the next one, after O.reset, the drive begins anew.
+	void settle_in()
+	{
+		const auto same = [](const auto& a, const auto& b) { return !a.owner_before(b) && !b.owner_before(a); };
+		const boost::weak_ptr<yade::Factorable> here = this->scene->weak_from_this(), nowhere;
+		if (same(here, home_)) return;
+		if (!home_.expired()) throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make one for every scene");
+		if (!same(home_, nowhere)) anchorStep = lastStep = -1, anchorTime = work = 0;
+		home_ = here;
+	}
+
 	SceneContacts contacts_;
+	boost::weak_ptr<yade::Factorable> home_; // scene that the drive began in
 };
 
 /// Base of the drives of one body or clump.
