@@ -56,8 +56,8 @@ class WiggleParameters(StudyParameters):
 
 
 PRESETS = {
-    "smoke": dict(width=26, height=18, depth=8, time=2, period=1, frames=2, dt_factor=5, rest=0.05),
-    "demo": dict(width=32, height=30, depth=14, time=10, period=1, dt_factor=5, rest=2e-3),
+    "smoke": dict(width=26, height=18, depth=8, time=2, amplitude=1.5, period=1, frames=2, dt_factor=5, rest=0.05),
+    "demo": dict(width=36, height=32, depth=16, time=20, period=4, dt_factor=5, rest=2e-3),
     "paper": {},
 }
 
