@@ -73,8 +73,8 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 			const std::uint32_t block_end = std::min((b + 1) * grains_per_block, n_free);
 			for (; c < candidates.size() && candidates[c].first < block_end; ++c) {
 				if (!candidates[c].near) continue;
-				const bool crosses = candidates[c].second < n_free && candidates[c].second >= range_end;
-				if (candidates[c].wrapped || crosses) early.push_back(c);
+				const bool leaves_range = candidates[c].second >= range_end;  // to another thread's grain, or to a body's
+				if (candidates[c].wrapped || leaves_range) early.push_back(c);
 				else place_at_next(c);
 			}
 			block_pair_end[b] = next;

@@ -28,7 +28,7 @@ public:
 	void point(KernelData& data);
 
 	std::vector<SweepRange> sweeps;              ///< one per thread
-	std::uint32_t early_begin = 0, early_end = 0;  ///< pairs to be computed before anything moves: across threads or periodic sides, between bodies
+	std::uint32_t early_begin = 0, early_end = 0;  ///< pairs to be computed before anything moves: across threads or periodic sides, with bodies
 	std::vector<std::uint32_t> place;            ///< by candidate; 0 = not selected
 
 	/// Forces on grains that do not move freely: by member, the places and which side of the pair it is.

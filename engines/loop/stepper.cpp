@@ -1,21 +1,24 @@
 /// One step: lists if anything may have come near, forces of early pairs, the sweep, then bodies.
 #include "engines/loop/stepper.hpp"
 
+#include "engines/loop/guards.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_selections = 40, steps_between_searches = 300;  // aimed at, where grains are fast
-constexpr double smallest_gap = 0.002, smallest_skin = 0.1, largest_skin = 0.35;  // [d]
+constexpr double steps_between_selections = 40;            // aimed at, where grains are fast
+constexpr double smallest_gap = 0.002, smallest_skin = 0.1;  // [d]
 
 }  // namespace
 
-Stepper::Stepper(const Scene& given) : scene(given), kernel(choose_kernel({ given.law.index(), given.friction, given.precision })), team(given.threads)
+Stepper::Stepper(const Scene& given)
+	: scene(given), kernel(choose_kernel({ given.law.index(), given.friction, given.precision })), team(given.threads)
 {
+	check_scene(scene);
 	arrange_rows();
 	data.dt = data.kick = data.drift = scene.dt;
 	data.gravity_x = scene.gravity_x;
@@ -73,32 +76,52 @@ void Stepper::step(long n)
 	if (failure) std::rethrow_exception(failure);
 }
 
-void Stepper::advance(int rank, long n)
+void Stepper::compute_body_forces()
 {
-	for (long k = 0; k < n && !failure; ++k) one_step(rank);
+	if (body_forces_known) return;
+	failure = nullptr;
+	prepare();
+	if (failure) std::rethrow_exception(failure);
+	kernel.pairs(data, pairs.early_begin, pairs.early_end, true);
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b) collect_forces(b);
+	body_forces_known = true;
 }
 
-void Stepper::one_step(int rank)
+void Stepper::advance(int rank, long n)
 {
-	if (rank == 0) prepare();
-	team.barrier();
-	if (failure) return;
-	const std::uint32_t packs = (pairs.early_end - pairs.early_begin) / pack_alignment;
-	const auto share = [&](int r) { return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / scene.threads) * pack_alignment; };
-	kernel.pairs(data, share(rank), share(rank + 1), true);
-	team.barrier();
+	const bool known = body_forces_known;
+	team.barrier();  // everyone has read it before the first step changes it
+	for (long k = 0; k < n && !failure; ++k) one_step(rank, k == 0 && known);
+}
+
+void Stepper::one_step(int rank, bool early_pairs_done)
+{
+	if (!early_pairs_done) {
+		if (rank == 0) prepare();
+		team.barrier();
+		if (failure) return;
+		compute_early_pairs(rank);
+		team.barrier();
+	}
 	const SweepRange& mine = pairs.sweeps[rank];
 	thread_fastest[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
 	team.barrier();
 	if (rank == 0) finish();
+	team.barrier();
+}
+
+void Stepper::compute_early_pairs(int rank)
+{
+	const std::uint32_t packs = (pairs.early_end - pairs.early_begin) / pack_alignment;
+	const auto share = [&](int r) { return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / scene.threads) * pack_alignment; };
+	kernel.pairs(data, share(rank), share(rank + 1), true);
 }
 
 void Stepper::prepare()
 {
 	try {
-		if (moved_since_selection > gap || selections == 0) {
-			select();
-		}
+		if (moved_since_selection > gap || selections == 0) select();
+		if (guards.every > 0 && steps % guards.every == 0) check_pairs();
 	} catch (...) {
 		failure = std::current_exception();
 	}
@@ -120,6 +143,7 @@ void Stepper::finish()
 	moved_since_selection += approach;
 	moved_since_search += approach;
 	++steps;
+	body_forces_known = false;
 }
 
 void Stepper::select()

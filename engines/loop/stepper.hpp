@@ -1,6 +1,7 @@
 /// The loop itself: search, pair forces and motion of a scene, step after step, the same bits on any number of threads.
 #pragma once
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "engines/loop/pair_list.hpp"
@@ -16,6 +17,21 @@ struct Contact {
 	double slip;                  ///< tangential spring [m]
 };
 
+/// One contact on a member of a rigid body.
+struct Touch {
+	std::uint32_t member, partner;  ///< indices in `Scene::grains`
+	double arm_x, arm_y;            ///< from the body's centre to the contact point, on the member's surface [m]
+	double n_x, n_y;                ///< from the member to its partner
+	double normal, friction;        ///< F_n along -n on the member, F_t along z x n on the member [N]
+	bool slipping;                  ///< Coulomb's bound is active
+};
+
+/// How a step is checked while it runs.
+struct Guards {
+	long every = 100;            ///< steps between two looks at every pair
+	double largest_overlap = 0.1;  ///< of the smaller radius [-]
+};
+
 class Stepper {
 public:
 	/// @throws std::invalid_argument for a scene that cannot be run: says which number, the rule and the way out
@@ -24,8 +40,17 @@ public:
 	/// Goes n steps on. @throws std::runtime_error when a guard trips, with step, grain and likely cause
 	void step(long n = 1);
 
+	/// Computes the contacts of bodies at the present positions, before anything moves: `bodies()` then hold their forces and
+	/// `touches_on` tells their contacts. The next step goes on from there, with velocities of bodies as they are then.
+	void compute_body_forces();
+
 	/// For velocities given on the step, not half a step behind: takes the first half kick (springs are left as they are).
 	void begin_on_step();
+
+	/// Writes everything that decides how the run goes on, and a text of the caller's, into one file (see checkpoint.hpp).
+	void save(const std::string& path, const std::string& companion = "");
+	/// A loop that goes on as the saved one would have, to the last bit, on any number of threads.
+	static std::unique_ptr<Stepper> restore(const std::string& path, int threads = 1, std::string* companion = nullptr);
 
 	long steps_done() const { return steps; }
 	double time() const { return steps * scene.dt; }
@@ -38,6 +63,8 @@ public:
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
 	std::vector<Contact> contacts() const;
+	/// Appends the contacts on a body, as of the last `compute_body_forces` or step.
+	void touches_on(std::size_t body, std::vector<Touch>& touches) const;
 
 	double kinetic_energy() const;          ///< of free grains, translation and rotation, at the half step [J]
 	double kinetic_energy_on_step();        ///< the same with the velocities of the whole step [J]
@@ -46,6 +73,7 @@ public:
 	long searches_done() const { return searches; }
 	long selections_done() const { return selections; }
 	std::size_t pairs_selected() const;
+	Guards& guarding() { return guards; }
 
 private:
 	Scene scene;
@@ -80,8 +108,16 @@ private:
 
 	void arrange_rows();
 	void place_members(std::size_t body);
+	bool body_forces_known = false;
+	Guards guards;
+
+	template <class Visitor, class Self>
+	static void visit_state(Visitor&& visit, Self& stepper);
+	void resume();
 	void advance(int rank, long n);
-	void one_step(int rank);
+	void one_step(int rank, bool early_pairs_done);
+	void compute_early_pairs(int rank);
+	void check_pairs() const;
 	void prepare();
 	void search();
 	void sort_rows();

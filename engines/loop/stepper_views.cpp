@@ -43,6 +43,30 @@ std::vector<Contact> Stepper::contacts() const
 	return found;
 }
 
+void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
+{
+	const double mu = std::visit([](const auto& law) { return law.mu; }, scene.law);
+	const double at_bound = mu * (scene.precision == Precision::single ? 1 - 1e-5 : 1 - 1e-12);  // round-off of the two precisions
+	const RigidBody& body = scene.bodies[b];
+	const double c = std::cos(body.angle), s = std::sin(body.angle);
+	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
+		const GrainRow& row = rows[n_free + m];
+		for (std::uint32_t k = pairs.member_begin[m]; k < pairs.member_begin[m + 1]; ++k) {
+			const PairList::Share share = pairs.member_shares[k];
+			const PairForce<double> f = pairs.force(share.candidate);
+			const double square = f.normal * f.normal + f.friction * f.friction;
+			if (square == 0) continue;
+			const Candidate& pair = pairs.candidates[share.candidate];
+			// F = -F_n n + F_t (z x n) on the owner, solved for n; on the partner n turns round, F_t (z x n) with it.
+			const double side = share.partner ? -1 : 1;
+			const double n_x = side * (f.friction * f.y - f.normal * f.x) / square, n_y = -side * (f.friction * f.x + f.normal * f.y) / square;
+			touches.push_back({ index_of[n_free + m], index_of[share.partner ? pair.first : pair.second],
+				c * members[m].x - s * members[m].y + row.radius * n_x, s * members[m].x + c * members[m].y + row.radius * n_y, n_x, n_y,
+				f.normal, f.friction, mu > 0 && std::abs(f.friction) >= at_bound * std::abs(f.normal) });
+		}
+	}
+}
+
 double Stepper::kinetic_energy() const
 {
 	double energy = 0;

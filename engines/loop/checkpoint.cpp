@@ -1,0 +1,140 @@
+/// Checkpoint files: atomic, checksummed, versioned; and what of a Stepper goes into one.
+#include "engines/loop/checkpoint.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <fcntl.h>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <unistd.h>
+
+#include "engines/loop/stepper.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr char magic[] = "GRAINDRIVE-LOOP\n";
+constexpr std::size_t magic_length = sizeof magic - 1, header_length = magic_length + 3 * sizeof(std::uint64_t);
+
+std::uint64_t fnv1a(const std::string& bytes)
+{
+	std::uint64_t hash = 14695981039346656037ull;
+	for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211ull;
+	return hash;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) { throw std::runtime_error("checkpoint " + path + ": " + why); }
+
+void write_all(int file, const std::string& bytes, const std::string& path)
+{
+	for (std::size_t done = 0; done < bytes.size();) {
+		const ssize_t written = ::write(file, bytes.data() + done, bytes.size() - done);
+		if (written < 0 && errno != EINTR) refuse(path, std::string("cannot be written: ") + std::strerror(errno));
+		if (written > 0) done += written;
+	}
+}
+
+/// Closes the file, and removes it unless it was kept.
+struct Temporary {
+	std::string path;
+	int file;
+	bool kept = false;
+	~Temporary()
+	{
+		::close(file);
+		if (!kept) ::unlink(path.c_str());
+	}
+};
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const std::string& body)
+{
+	const std::uint64_t numbers[3] = { checkpoint_version, body.size(), fnv1a(body) };
+	Temporary beside { path + ".part", ::open((path + ".part").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666) };
+	if (beside.file < 0) refuse(path, std::string("cannot be written: ") + std::strerror(errno));
+	write_all(beside.file, std::string(magic, magic_length) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
+	if (::fsync(beside.file) != 0) refuse(path, std::string("cannot be flushed to the disk: ") + std::strerror(errno));
+	if (std::rename(beside.path.c_str(), path.c_str()) != 0) refuse(path, std::string("cannot be renamed into place: ") + std::strerror(errno));
+	beside.kept = true;
+}
+
+std::string read_checkpoint(const std::string& path)
+{
+	std::ifstream in(path, std::ios::binary);
+	if (!in) refuse(path, std::string("cannot be opened: ") + std::strerror(errno));
+	const std::string all((std::istreambuf_iterator<char>(in)), {});
+	if (all.size() < header_length || all.compare(0, magic_length, magic, magic_length) != 0) refuse(path, "is not a checkpoint of GrainLoop");
+	std::uint64_t numbers[3];
+	std::memcpy(numbers, all.data() + magic_length, sizeof numbers);
+	if (numbers[0] != checkpoint_version)
+		refuse(path, "has version " + std::to_string(numbers[0]) + ", this build reads " + std::to_string(checkpoint_version) + "; continue with the version that wrote it");
+	if (all.size() - header_length != numbers[1])
+		refuse(path, "was cut short: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
+	std::string body = all.substr(header_length);
+	if (fnv1a(body) != numbers[2]) refuse(path, "is damaged: its checksum does not fit its contents");
+	return body;
+}
+
+namespace {
+
+template <class Visitor, class SceneType>
+void visit_scene(Visitor&& visit, SceneType& s)
+{
+	visit(s.grains);
+	visit(s.bodies);
+	visit(s.box);
+	visit(s.law);
+	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision), visit(s.spin_response), visit(s.skin);
+}
+
+}  // namespace
+
+template <class Visitor, class Self>
+void Stepper::visit_state(Visitor&& visit, Self& s)
+{
+	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
+	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.gap);
+	visit(s.moved_since_search), visit(s.moved_since_selection), visit(s.fastest), visit(s.guards);
+}
+
+void Stepper::save(const std::string& path, const std::string& companion)
+{
+	if (body_forces_known) throw std::runtime_error("checkpoint " + path + ": a step is under way; save between steps");
+	pairs.keep_slips();
+	Packer pack;
+	visit_scene(pack, scene);
+	visit_state(pack, *this);
+	pack(companion);
+	write_checkpoint(path, pack.bytes);
+}
+
+std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, std::string* companion)
+{
+	const std::string body = read_checkpoint(path);
+	Unpacker unpack(body);
+	Scene scene;
+	visit_scene(unpack, scene);
+	scene.threads = threads;
+	auto stepper = std::make_unique<Stepper>(scene);
+	visit_state(unpack, *stepper);
+	std::string rest;
+	unpack(rest);
+	if (companion) *companion = rest;
+	stepper->resume();
+	return stepper;
+}
+
+/// What follows from the saved arrays.
+void Stepper::resume()
+{
+	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
+	if (selections == 0) return;
+	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
+	pairs.point(data);
+	data.rows = rows.data();
+}
+
+}  // namespace graindrive::loop

@@ -1,0 +1,86 @@
+/// One file that holds a running loop to the last bit, written whole or not at all.
+///
+/// Layout: magic "GRAINDRIVE-LOOP\n", version, length of the body, FNV-1a checksum of the body (three 64-bit numbers of this machine's byte
+/// order), then the body: every array that decides how the run goes on, in the order in which it lies in memory.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace graindrive::loop {
+
+constexpr std::uint64_t checkpoint_version = 1;
+
+/// Writes beside `path`, flushes to the disk, renames. @throws std::runtime_error naming the file and the system's reason
+void write_checkpoint(const std::string& path, const std::string& body);
+
+/// The body of a checkpoint. @throws std::runtime_error saying why a file is refused: missing, foreign, of another version, cut short, damaged
+std::string read_checkpoint(const std::string& path);
+
+/// Plain numbers and arrays of them, one behind the other.
+class Packer {
+public:
+	std::string bytes;
+
+	template <class T>
+	void operator()(const T& number)
+	{
+		static_assert(std::is_trivially_copyable_v<T>);
+		bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+	}
+	template <class T, class Allocator>
+	void operator()(const std::vector<T, Allocator>& list)
+	{
+		static_assert(std::is_trivially_copyable_v<T>);
+		(*this)(std::uint64_t(list.size()));
+		bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T));
+	}
+	void operator()(const std::string& text)
+	{
+		(*this)(std::uint64_t(text.size()));
+		bytes += text;
+	}
+};
+
+/// Reads what a Packer wrote, in the same order.
+class Unpacker {
+public:
+	explicit Unpacker(const std::string& from) : bytes(from) { }
+
+	template <class T>
+	void operator()(T& number)
+	{
+		std::memcpy(&number, take(sizeof number), sizeof number);
+	}
+	template <class T, class Allocator>
+	void operator()(std::vector<T, Allocator>& list)
+	{
+		std::uint64_t size = 0;
+		(*this)(size);
+		const char* from = take(size * sizeof(T));
+		list.resize(size);
+		if (size > 0) std::memcpy(static_cast<void*>(list.data()), from, size * sizeof(T));
+	}
+	void operator()(std::string& text)
+	{
+		std::uint64_t size = 0;
+		(*this)(size);
+		text.assign(take(size), size);
+	}
+
+private:
+	const std::string& bytes;
+	std::size_t at = 0;
+
+	const char* take(std::size_t count)
+	{
+		if (count > bytes.size() - at) throw std::runtime_error("checkpoint ends too early; it was written by another build");
+		at += count;
+		return bytes.data() + at - count;
+	}
+};
+
+}  // namespace graindrive::loop

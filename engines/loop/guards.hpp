@@ -1,0 +1,18 @@
+/// Checks of a scene before it starts, and the words of a guard that trips while it runs.
+#pragma once
+#include <string>
+
+#include "engines/loop/scene.hpp"
+
+namespace graindrive::loop {
+
+/// @throws std::invalid_argument naming the rule, the number and the way out
+void check_scene(const Scene& scene);
+
+/// Largest stable time step of the stiffest, lightest pair of free grains at an overlap of `overlap` radii [s].
+///
+/// omega dt < 2 (sqrt(1 + zeta^2) - zeta) for the normal motion and for sliding, in which two grains move with m_eff/(1 + m R^2/I):
+/// a third of m_eff for disks. Hertz stiffness grows with the overlap, so it is taken where the overlap guard stops a run.
+double critical_time_step(const Scene& scene, double overlap = 0.1);
+
+}  // namespace graindrive::loop

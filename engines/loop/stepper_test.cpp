@@ -1,0 +1,200 @@
+/// The fast loop against the plain one, conservation laws, and the promise of the same bits.
+#include "engines/loop/stepper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "engines/loop/test_scenes.hpp"
+
+using namespace graindrive;
+using namespace graindrive::loop;
+using namespace graindrive::loop::test;
+
+namespace {
+
+double difference_from_plain(const Scene& scene, int steps)
+{
+	Stepper fast(scene);
+	PlainLoop plain(scene);
+	for (int k = 0; k < steps; ++k) plain.step();
+	fast.step(steps);
+	return largest_difference(scene, [&](std::size_t i) { return fast.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
+}
+
+// Round-off of one step is 1e-16; forces of order 1e4 per unit mass over dt = 1e-4 and some tens of collision times let it grow to below this.
+constexpr double grown_round_off = 1e-9;
+
+}  // namespace
+
+TEST(Stepper, follows_the_plain_loop_with_each_law)
+{
+	for (const ContactLaw& law : { ContactLaw(hertz()), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)), ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
+		Scene scene = crowd(9, 1);
+		scene.law = law;
+		EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
+	}
+}
+
+TEST(Stepper, follows_the_plain_loop_in_every_box)
+{
+	for (const bool x : { false, true })
+		for (const bool y : { false, true }) {
+			Scene scene = crowd(8, 2);
+			scene.box.periodic_x = x, scene.box.periodic_y = y;
+			scene.gravity_y = -1, scene.gravity_x = 0.3;
+			EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
+		}
+}
+
+TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
+{
+	Scene scene = crowd(9, 3);
+	scene.box.periodic_y = false;
+	for (std::size_t i = 0; i < 9; ++i) scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
+	for (std::size_t i = 9; i < scene.grains.size(); i += 7) scene.grains[i].radius *= 0.4;  // small ones have many neighbours' surplus to fold
+	scene.bodies.push_back({});
+	EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
+}
+
+TEST(Stepper, springs_survive_searches_and_sorting)
+{
+	Scene often = crowd(10, 4, 3), seldom = often;
+	often.skin = 0.01;
+	seldom.skin = 0.3;
+	Stepper a(often), b(seldom);
+	a.step(600), b.step(600);
+	EXPECT_GT(a.searches_done(), 5 * b.searches_done());
+	// Only the order of sums differs; a lost spring would show as 1e-3.
+	EXPECT_LT(largest_difference(often, [&](std::size_t i) { return a.grain(i); }, [&](std::size_t i) { return b.grain(i); }), grown_round_off);
+}
+
+TEST(Stepper, gives_the_same_bits_on_any_number_of_threads_and_in_any_portions)
+{
+	for (const Precision precision : { Precision::double_, Precision::single }) {
+		Scene scene = crowd(16, 5, 2);
+		scene.precision = precision;
+		Stepper one(scene);
+		one.step(300);
+		for (const int threads : { 2, 3, 5 }) {
+			scene.threads = threads;
+			Stepper many(scene);
+			many.step(100), many.step(1), many.step(199);
+			EXPECT_TRUE(same_bits(one, many)) << threads << " threads";
+		}
+	}
+}
+
+TEST(Stepper, conserves_momentum)
+{
+	Stepper loop(crowd(12, 6));
+	const auto momentum = [&] {
+		Vector2r sum(0, 0);
+		for (std::size_t i = 0; i < loop.size(); ++i) sum += loop.grain(i).mass * Vector2r(loop.grain(i).vx, loop.grain(i).vy);
+		return sum;
+	};
+	const Vector2r before = momentum();
+	loop.step(1000);
+	// 144 grains, 1000 steps, force impulses up to 1: sums of 1e5 roundings of 1e-16 each.
+	EXPECT_LT((momentum() - before).norm(), 1e-11);
+}
+
+TEST(Stepper, bounces_without_damping_keep_the_energy)
+{
+	Scene scene = crowd(10, 7, 0.5);
+	scene.law = hertz(0, 0);
+	scene.friction = false;
+	scene.dt = 2e-5;
+	for (Grain& g : scene.grains) g.radius *= 0.85, g.mass *= 0.85 * 0.85;  // start apart
+	Stepper loop(scene);
+	const double before = loop.kinetic_energy();
+	double lowest = before, highest = 0;
+	for (int k = 0; k < 4000; ++k) {
+		loop.step(10);
+		lowest = std::min(lowest, loop.kinetic_energy());
+		highest = std::max(highest, loop.kinetic_energy());
+	}
+	EXPECT_LT(lowest, 0.999 * before);  // some of it is elastic during collisions
+	// Leapfrog's error is (omega dt)^2/24 = 1e-5 of a collision's energy while it lasts and returns to zero after it.
+	EXPECT_NEAR(highest, before, 1e-4 * before);
+}
+
+TEST(Stepper, processors_agree)
+{
+	const Scene scene = crowd(12, 8);
+	Stepper best(scene);
+	best.step(300);
+	for (const char* processor : { "avx2", "portable" }) {
+		setenv("GRAINDRIVE_PROCESSOR", processor, 1);
+		try {
+			Stepper other(scene);
+			other.step(300);
+			EXPECT_LT(largest_difference(scene, [&](std::size_t i) { return best.grain(i); }, [&](std::size_t i) { return other.grain(i); }), grown_round_off) << processor;
+		} catch (const std::invalid_argument&) {  // this machine has no AVX2
+		}
+	}
+	setenv("GRAINDRIVE_PROCESSOR", "abacus", 1);
+	EXPECT_THROW(Stepper { scene }, std::invalid_argument);
+	unsetenv("GRAINDRIVE_PROCESSOR");
+}
+
+TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain_is)
+{
+	const auto far_from_near = [](double shift) {
+		Scene scene;
+		scene.law = hertz();
+		scene.dt = 1e-4;
+		scene.precision = Precision::single;
+		scene.grains = { disk(shift, 0), disk(shift + 0.99, 0.1) };
+		scene.grains[0].vx = 1;
+		Stepper loop(scene);
+		loop.step(200);
+		return loop.grain(0).x - shift;
+	};
+	// Contacts see differences of double positions; what is left is float round-off, 6e-8 of an overlap's forces.
+	EXPECT_NEAR(far_from_near(0), far_from_near(300), 1e-6);
+	Scene scene = crowd(10, 9);
+	Stepper twice(scene);
+	scene.precision = Precision::single;
+	Stepper once(scene);
+	twice.step(100), once.step(100);
+	EXPECT_LT(largest_difference(scene, [&](std::size_t i) { return once.grain(i); }, [&](std::size_t i) { return twice.grain(i); }), 1e-3);
+}
+
+TEST(Stepper, refuses_what_cannot_run_and_says_why)
+{
+	const auto message = [](Scene scene) -> std::string {
+		try {
+			Stepper { scene };
+		} catch (const std::invalid_argument& error) {
+			return error.what();
+		}
+		return "";
+	};
+	Scene scene = crowd(4, 1);
+	scene.dt = 1;
+	EXPECT_NE(message(scene).find("critical"), std::string::npos);
+	scene = crowd(4, 1);
+	scene.grains[3].radius = -1;
+	EXPECT_NE(message(scene).find("radius must be positive, got -1 in grain 3"), std::string::npos);
+	scene = crowd(4, 1);
+	scene.box.x_high = 2;
+	Stepper narrow(scene);
+	EXPECT_THROW(narrow.step(), std::invalid_argument);  // too few cells across
+}
+
+TEST(Stepper, a_deep_overlap_stops_the_run_with_step_and_grain)
+{
+	Scene scene;
+	scene.law = hertz();
+	scene.dt = 1e-4;
+	scene.grains = { disk(0, 0), disk(0.7, 0) };
+	Stepper deep(scene);
+	try {
+		deep.step(200);
+		FAIL() << "an overlap of 0.6 of a radius went unnoticed";
+	} catch (const std::runtime_error& error) {
+		EXPECT_NE(std::string(error.what()).find("step 0: grain 0 at (0, 0)"), std::string::npos) << error.what();
+		EXPECT_NE(std::string(error.what()).find("overlap by 0.6 of a radius"), std::string::npos) << error.what();
+	}
+}
