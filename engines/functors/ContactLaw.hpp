@@ -1,7 +1,7 @@
 /// A pure contact law as a `Law2_` functor of YADE's InteractionLoop.
 #pragma once
+#include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 #include "engines/laws/sphere_pair.hpp"
-#include "engines/seam/contact_phys.hpp"
 
 namespace graindrive {
 
@@ -28,10 +28,15 @@ public:
 	{
 		const auto& geom = static_cast<const yade::ScGeom&>(*igeom);
 		if (geom.penetrationDepth < 0) return false;
+		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
-		if (!phys)
-			throw std::runtime_error(std::string(Self::class_name) + " needs contacts made by Ip2_FrictMat_FrictMat_ContactPhys; put it in the InteractionLoop");
-		apply(geom, *phys, interaction->getId1(), interaction->getId2());
+		if (!phys) { // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
+			const Real friction = static_cast<const yade::FrictPhys&>(*iphys).tangensOfFrictionAngle;
+			const auto made = contact_phys_of(*this->scene, geom, id1, id2, friction);
+			iphys = made;
+			phys = made.get();
+		}
+		apply(geom, *phys, id1, id2);
 		return true;
 	}
 

@@ -4,6 +4,9 @@
 
 namespace graindrive {
 
+/// The pair's reduced radius and mass, and its friction coefficient.
+yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, const yade::ScGeom& geom, int id1, int id2, Real friction);
+
 class Ip2_FrictMat_FrictMat_ContactPhys : public Registered<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor> {
 public:
 	static constexpr const char* class_name = "Ip2_FrictMat_FrictMat_ContactPhys";
@@ -20,9 +23,6 @@ public:
 	        const yade::shared_ptr<yade::Interaction>& interaction) override;
 
 	Real friction = -1;
-
-private:
-	Real inverse_mass(int body) const;
 };
 
 }  // namespace graindrive
