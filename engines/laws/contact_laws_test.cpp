@@ -6,25 +6,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "engines/base/complaint.hpp"
 #include "engines/laws/random_contacts.hpp"
 
 using namespace graindrive;
 using namespace graindrive::laws;
-
-namespace {
-
-template <class Action>
-std::string complaint(Action action)
-{
-	try {
-		action();
-	} catch (const std::invalid_argument& error) {
-		return error.what();
-	}
-	return "";
-}
-
-}  // namespace
 
 TEST(ContactLaws, partner_feels_the_opposite_force_to_the_last_bit)
 {

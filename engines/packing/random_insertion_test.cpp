@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "engines/base/complaint.hpp"
 #include "engines/packing/random.hpp"
 
 using namespace graindrive;
@@ -13,19 +14,6 @@ using namespace graindrive::packing;
 namespace {
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
-
-template <class Action>
-std::string complaint(Action action)
-{
-	try {
-		action();
-	} catch (const std::invalid_argument& error) {
-		return error.what();
-	}
-	return "";
-}
-
-bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The cell grid's answer without a cell grid.
 Real deepest_by_brute_force(const Box& box, const Points& centres, const std::vector<Real>& radii)

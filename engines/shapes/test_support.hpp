@@ -1,27 +1,14 @@
-/// What the tests of outlines share: the message of an error, and star-shaped polygons from a seed.
+/// What the tests of outlines share: star-shaped polygons from a seed.
 #pragma once
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
 
+#include "engines/base/complaint.hpp"
 #include "engines/shapes/outline.hpp"
 
 namespace graindrive::shapes {
-
-/// What `action` complains about; empty if it does not.
-template <class Action>
-std::string complaint(Action action)
-{
-	try {
-		action();
-	} catch (const std::invalid_argument& error) {
-		return error.what();
-	}
-	return "";
-}
-
-inline bool mentions(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// A polygon of 5 to 24 corners about the origin, at radii between 3 and 6: convex and reflex corners, never crossing.
 inline Points star(unsigned seed)
