@@ -205,7 +205,8 @@ def test_two_runs_do_not_share_a_folder(place):
 
 def test_batch_tables_run_rows_in_folders_of_their_own(place):
     (place.work / "table").write_text("period steps\n1 100\n2 =\n")
-    command = ["yade-batch", "-j2", "table", str(TOY)]
+    toy = shutil.copy(TOY, place.work)  # yade-batch puts its logs beside the script
+    command = ["yade-batch", "-j2", "table", str(toy)]
     options = dict(cwd=place.work, env=place.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     result = subprocess.run(command, timeout=120, **options)
     assert result.returncode == 0 and result.stdout.count("exit status 0") == 2, result.stdout + result.stderr
