@@ -1,4 +1,4 @@
-"""The proof of YADE's class layout: it holds here, and it fails, in words that help, when any declared offset is wrong."""
+"""The proof of YADE's class layout: it holds here, and fails, in words that help, when a declared offset is wrong."""
 
 import re
 import subprocess
@@ -42,7 +42,7 @@ def test_every_kind_of_fact_is_proven(kind):
     assert FACTS[kind] in MEMBERS
 
 
-# Backwards by 16: a size 8 bytes too small is hidden by the allocator, which hands out 104 bytes to whoever asks for 96.
+# Back by 16: a size 8 bytes too small is hidden by the allocator, which gives 104 bytes to whoever asks for 96.
 @pytest.mark.parametrize("member, shift", [(m, s) for m in MEMBERS for s in (-16, 8)])
 def test_a_damaged_offset_is_refused(member, shift):
     with pytest.raises(ImportError) as refusal:

@@ -120,6 +120,7 @@ public:
 		boost::serialization::void_cast_register<Self, Base>();
 		seam::serialize_base(archive, static_cast<Base&>(*this));
 		Self::attributes([&](const char* name, auto member, const char*) { archive& boost::serialization::make_nvp(name, self().*member); });
+		if constexpr (Archive::is_loading::value) self().callPostLoad();
 	}
 
 private:

@@ -31,7 +31,10 @@ def new_scene(dt=1e-4, period=None):
 
 
 def disk(x, y, radius=0.5, velocity=(0, 0), spin=0.0, density=1.0, frozen=False):
-    """A disk of unit thickness: mass rho pi R^2, moment of inertia m R^2/2. A colour, because YADE's random one reseeds `random`."""
+    """A disk of unit thickness: mass rho pi R^2, moment of inertia m R^2/2.
+
+    It has a colour because YADE's random one reseeds `random` from the clock.
+    """
     body = utils.sphere((x, y, 0), radius, color=(1, 1, 1))
     mass = density * math.pi * radius**2
     body.state.mass = mass
@@ -97,8 +100,8 @@ def everything():
     return np.array([[*b.state.pos, *b.state.vel, *b.state.ori, *b.state.angVel, *b.state.angMom] for b in O.bodies])
 
 
-def shaken_bed():
-    """49 disks settling on a base that turns, around a shaken clump: contacts, slip, history, every drive, both kernels."""
+def shaken_bed(skin=0.1):
+    """50 disks fall around a shaken clump: contacts, slip, history, every drive, both kernels."""
     new_scene(dt=2e-4)
     rng = np.random.default_rng(5)
     base = [disk(x, 0.0, frozen=True) for x in np.arange(-1.0, 9.0)]
@@ -116,6 +119,7 @@ def shaken_bed():
         hertz(gamma_n=250, gamma_t=250),
         friction=0.4,
         gravity=(0, -10),
+        skin=skin,
         before_newton=[
             engines.OscillationDrive(body=intruder, amplitude=0.1, period=0.5, label="shake"),
             engines.SpinTranslateDrive(body=spinner, velocity=(0, -2.5, 0), spin=(0, 0, 2), label="spin"),
