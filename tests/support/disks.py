@@ -5,7 +5,7 @@ import math
 import numpy as np
 from graindrive import engines  # first: it finds YADE
 from yade import O, utils
-from yade.minieigenHP import Quaternion, Vector3
+from yade.minieigenHP import Vector3
 from yade.wrapper import (
     Bo1_Sphere_Aabb,
     ForceResetter,
@@ -51,7 +51,7 @@ def clump(offsets, at=(0.0, 0.0), radius=0.3, mass=2.0, inertia=0.5):
     members = [disk(at[0] + dx, at[1] + dy, radius) for dx, dy in offsets]
     ident = O.bodies.clump(members)
     state = O.bodies[ident].state
-    state.mass, state.inertia, state.ori = mass, Vector3(1, 1, 1) * inertia, Quaternion((0, 0, 1), 0)
+    state.mass, state.inertia = mass, Vector3(1, 1, 1) * inertia  # the orientation stays: members' places refer to it
     state.blockedDOFs = IN_PLANE
     return ident, members
 
