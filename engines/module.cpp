@@ -10,6 +10,7 @@ void bind_packing();
 void bind_functors();
 void bind_drives();
 void bind_measures();
+void bind_loop();
 }  // namespace graindrive
 
 static void register_everything()
@@ -23,6 +24,7 @@ static void register_everything()
 	graindrive::bind_functors();
 	graindrive::bind_drives();
 	graindrive::bind_measures();
+	graindrive::bind_loop();
 }
 
 /// BOOST_PYTHON_MODULE would return the half-made module beside the exception, which Python reports as a SystemError without its text.

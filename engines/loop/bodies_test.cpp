@@ -72,7 +72,8 @@ TEST(Bodies, a_clump_hit_by_a_grain_shares_its_momentum_and_angular_momentum)
 		const Grain g = loop.grain(0);
 		const RigidBody& b = loop.bodies()[0];
 		return Vector3r(g.mass * g.vx + b.mass * b.vx, g.mass * g.vy + b.mass * b.vy,
-			g.mass * (g.x * g.vy - g.y * g.vx) + g.mass * g.radius * g.radius / 2 * g.spin + b.mass * (b.x * b.vy - b.y * b.vx) + b.inertia * b.spin);
+			g.mass * (g.x * g.vy - g.y * g.vx) + g.mass * g.radius * g.radius / 2 * g.spin + b.mass * (b.x * b.vy - b.y * b.vx) +
+				b.inertia * b.spin);
 	};
 	const Vector3r before = totals();
 	loop.step(6000);
@@ -126,8 +127,8 @@ TEST(Bodies, a_drum_of_beads_turns_and_carries_grains)
 		spread = std::max(spread, std::hypot(loop.grain(i).x, loop.grain(i).y));
 		mean_x += loop.grain(i).x / 30;
 	}
-	EXPECT_LT(spread, 5.2);   // nobody leaves through the wall
-	EXPECT_GT(mean_x, 0.1);   // counter-clockwise: the bed is carried up on the right
+	EXPECT_LT(spread, 5.2);  // nobody leaves through the wall
+	EXPECT_GT(mean_x, 0.1);  // counter-clockwise: the bed is carried up on the right
 }
 
 TEST(Bodies, forces_are_known_before_the_step_and_the_step_goes_on_from_there)
@@ -135,7 +136,8 @@ TEST(Bodies, forces_are_known_before_the_step_and_the_step_goes_on_from_there)
 	Scene scene = crowd(10, 3);
 	scene.box.periodic_y = false;
 	scene.bodies.push_back({});
-	for (std::size_t i = 0; i < 10; ++i) scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
+	for (std::size_t i = 0; i < 10; ++i)
+		scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
 	Stepper straight(scene), asked(scene);
 	for (int k = 0; k < 200; ++k) {
 		straight.step();
@@ -143,7 +145,8 @@ TEST(Bodies, forces_are_known_before_the_step_and_the_step_goes_on_from_there)
 		std::vector<Touch> touches;
 		asked.touches_on(0, touches);
 		Vector2r sum(0, 0);
-		for (const Touch& t : touches) sum += Vector2r(-t.normal * t.n_x - t.friction * t.n_y, -t.normal * t.n_y + t.friction * t.n_x);
+		for (const Touch& t : touches)
+			sum += Vector2r(-t.normal * t.n_x - t.friction * t.n_y, -t.normal * t.n_y + t.friction * t.n_x);
 		const double before_x = asked.bodies()[0].force_x, before_y = asked.bodies()[0].force_y;
 		EXPECT_NEAR(sum[0], before_x, 1e-9 * (1 + std::abs(before_x)));
 		EXPECT_NEAR(sum[1], before_y, 1e-9 * (1 + std::abs(before_y)));

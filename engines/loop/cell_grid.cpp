@@ -21,8 +21,9 @@ GridAxis axis(double low, double high, bool periodic, double reach, std::uint32_
 	a.cells = std::max(1, static_cast<int>(std::min(a.length / reach, 1e4 + n)));
 	if (periodic && a.cells < cells_needed_when_periodic) {
 		std::ostringstream message;
-		message << "a periodic box must be at least " << cells_needed_when_periodic * reach << " m long in " << name << " (three of the largest free grains, with skin), got "
-		        << a.length << " m; lengthen it or make the grain a rigid body";
+		message << "a periodic box must be at least " << cells_needed_when_periodic * reach << " m long in " << name
+				<< " (three of the largest free grains, with skin), got " << a.length
+				<< " m; lengthen it or make the grain a rigid body";
 		throw std::invalid_argument(message.str());
 	}
 	a.per_length = a.length > 0 ? a.cells / a.length : 0;
@@ -31,10 +32,7 @@ GridAxis axis(double low, double high, bool periodic, double reach, std::uint32_
 
 }  // namespace
 
-int GridAxis::cell(double at) const
-{
-	return std::clamp(static_cast<int>((at - low) * per_length), 0, cells - 1);
-}
+int GridAxis::cell(double at) const { return std::clamp(static_cast<int>((at - low) * per_length), 0, cells - 1); }
 
 void CellGrid::lay(const GrainRow* rows, std::uint32_t n_free, const Box& box, double reach)
 {
@@ -45,8 +43,12 @@ void CellGrid::lay(const GrainRow* rows, std::uint32_t n_free, const Box& box, d
 		y_low = i ? std::min(y_low, rows[i].y) : rows[i].y;
 		y_high = i ? std::max(y_high, rows[i].y) : rows[i].y;
 	}
-	const auto along_x = [&](double r) { return box.periodic_x ? axis(box.x_low, box.x_high, true, r, n_free, "x") : axis(x_low, x_high, false, r, n_free, "x"); };
-	const auto along_y = [&](double r) { return box.periodic_y ? axis(box.y_low, box.y_high, true, r, n_free, "y") : axis(y_low, y_high, false, r, n_free, "y"); };
+	const auto along_x = [&](double r) {
+		return box.periodic_x ? axis(box.x_low, box.x_high, true, r, n_free, "x") : axis(x_low, x_high, false, r, n_free, "x");
+	};
+	const auto along_y = [&](double r) {
+		return box.periodic_y ? axis(box.y_low, box.y_high, true, r, n_free, "y") : axis(y_low, y_high, false, r, n_free, "y");
+	};
 	GridAxis x = along_x(reach), y = along_y(reach);
 	const double crowd = double(x.cells) * y.cells / (4.0 * n_free + 100);  // a stray grain must not cost memory
 	if (crowd > 1) {

@@ -14,7 +14,7 @@ struct GridAxis {
 	double per_length = 0;       ///< cells per length [1/m]
 	bool periodic = false;
 
-	int cell(double at) const;   ///< 0 … cells - 1, nearest for positions outside
+	int cell(double at) const;  ///< 0 … cells - 1, nearest for positions outside
 };
 
 struct CellGrid {

@@ -25,7 +25,10 @@ std::uint64_t fnv1a(const std::string& bytes)
 	return hash;
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) { throw std::runtime_error("checkpoint " + path + ": " + why); }
+[[noreturn]] void refuse(const std::string& path, const std::string& why)
+{
+	throw std::runtime_error("checkpoint " + path + ": " + why);
+}
 
 void write_all(int file, const std::string& bytes, const std::string& path)
 {
@@ -53,11 +56,13 @@ struct Temporary {
 void write_checkpoint(const std::string& path, const std::string& body)
 {
 	const std::uint64_t numbers[3] = { checkpoint_version, body.size(), fnv1a(body) };
-	Temporary beside { path + ".part", ::open((path + ".part").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666) };
+	Temporary beside{ path + ".part", ::open((path + ".part").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666) };
 	if (beside.file < 0) refuse(path, std::string("cannot be written: ") + std::strerror(errno));
-	write_all(beside.file, std::string(magic, magic_length) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
+	write_all(beside.file,
+		std::string(magic, magic_length) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
 	if (::fsync(beside.file) != 0) refuse(path, std::string("cannot be flushed to the disk: ") + std::strerror(errno));
-	if (std::rename(beside.path.c_str(), path.c_str()) != 0) refuse(path, std::string("cannot be renamed into place: ") + std::strerror(errno));
+	if (std::rename(beside.path.c_str(), path.c_str()) != 0)
+		refuse(path, std::string("cannot be renamed into place: ") + std::strerror(errno));
 	beside.kept = true;
 }
 
@@ -66,13 +71,16 @@ std::string read_checkpoint(const std::string& path)
 	std::ifstream in(path, std::ios::binary);
 	if (!in) refuse(path, std::string("cannot be opened: ") + std::strerror(errno));
 	const std::string all((std::istreambuf_iterator<char>(in)), {});
-	if (all.size() < header_length || all.compare(0, magic_length, magic, magic_length) != 0) refuse(path, "is not a checkpoint of GrainLoop");
+	if (all.size() < header_length || all.compare(0, magic_length, magic, magic_length) != 0)
+		refuse(path, "is not a checkpoint of GrainLoop");
 	std::uint64_t numbers[3];
 	std::memcpy(numbers, all.data() + magic_length, sizeof numbers);
 	if (numbers[0] != checkpoint_version)
-		refuse(path, "has version " + std::to_string(numbers[0]) + ", this build reads " + std::to_string(checkpoint_version) + "; continue with the version that wrote it");
+		refuse(path, "has version " + std::to_string(numbers[0]) + ", this build reads " + std::to_string(checkpoint_version) +
+						 "; continue with the version that wrote it");
 	if (all.size() - header_length != numbers[1])
-		refuse(path, "was cut short: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
+		refuse(path,
+			"was cut short: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
 	std::string body = all.substr(header_length);
 	if (fnv1a(body) != numbers[2]) refuse(path, "is damaged: its checksum does not fit its contents");
 	return body;
@@ -87,7 +95,8 @@ void visit_scene(Visitor&& visit, SceneType& s)
 	visit(s.bodies);
 	visit(s.box);
 	visit(s.law);
-	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision), visit(s.spin_response), visit(s.skin);
+	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision),
+		visit(s.spin_response), visit(s.skin);
 }
 
 }  // namespace

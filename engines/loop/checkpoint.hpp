@@ -48,7 +48,7 @@ public:
 /// Reads what a Packer wrote, in the same order.
 class Unpacker {
 public:
-	explicit Unpacker(const std::string& from) : bytes(from) { }
+	explicit Unpacker(const std::string& from) : bytes(from) {}
 
 	template <class T>
 	void operator()(T& number)

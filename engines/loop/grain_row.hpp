@@ -10,11 +10,11 @@
 namespace graindrive::loop {
 
 struct alignas(64) GrainRow {
-	double x, y;              ///< centre [m]; not wrapped between two searches for neighbours
-	double vx, vy;            ///< velocity, half a step behind the position [m/s]
-	double radius;            ///< [m]
-	double surface_speed;     ///< radius * spin [m/s], counter-clockwise positive
-	double inverse_mass;      ///< 1/m [1/kg]; 0 stands for an infinite mass
+	double x, y;           ///< centre [m]; not wrapped between two searches for neighbours
+	double vx, vy;         ///< velocity, half a step behind the position [m/s]
+	double radius;         ///< [m]
+	double surface_speed;  ///< radius * spin [m/s], counter-clockwise positive
+	double inverse_mass;   ///< 1/m [1/kg]; 0 stands for an infinite mass
 	double unused;
 };
 static_assert(sizeof(GrainRow) == 64, "one row, one cache line");
@@ -45,13 +45,21 @@ struct CacheAligned {
 	using value_type = T;
 	CacheAligned() = default;
 	template <class U>
-	CacheAligned(const CacheAligned<U>&) { }
+	CacheAligned(const CacheAligned<U>&)
+	{
+	}
 	T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
 	void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
 	template <class U>
-	bool operator==(const CacheAligned<U>&) const { return true; }
+	bool operator==(const CacheAligned<U>&) const
+	{
+		return true;
+	}
 	template <class U>
-	bool operator!=(const CacheAligned<U>&) const { return false; }
+	bool operator!=(const CacheAligned<U>&) const
+	{
+		return false;
+	}
 };
 
 template <class T>

@@ -33,20 +33,24 @@ void check_grain(const Scene& scene, std::size_t i)
 	require(std::isfinite(g.x) && std::isfinite(g.y) && std::isfinite(g.vx) && std::isfinite(g.vy) && std::isfinite(g.spin),
 		"position, velocity and spin must be finite, got a number that is not in grain ", i);
 	require(g.radius > 0 && std::isfinite(g.radius), "radius must be positive, got ", g.radius, " in grain ", i);
-	require(g.body >= free_grain && g.body < static_cast<int>(scene.bodies.size()), "a grain's body must be -1 (free) or one of ", scene.bodies.size(), " bodies, got ",
-		g.body, " in grain ", i);
-	require(g.mass > 0 && (g.body != free_grain || std::isfinite(g.mass)), "mass must be positive, and finite for a free grain, got ", g.mass, " in grain ", i);
+	require(g.body >= free_grain && g.body < static_cast<int>(scene.bodies.size()), "a grain's body must be -1 (free) or one of ",
+		scene.bodies.size(), " bodies, got ", g.body, " in grain ", i);
+	require(g.mass > 0 && (g.body != free_grain || std::isfinite(g.mass)),
+		"mass must be positive, and finite for a free grain, got ", g.mass, " in grain ", i);
 }
 
 void check_body(const RigidBody& body, std::size_t b)
 {
-	require(body.mass > 0 || !(body.responds_x || body.responds_y), "a body that responds to forces needs a positive mass, got ", body.mass, " in body ", b);
-	require(body.inertia > 0 || !body.responds_spin, "a body that responds to torques needs a positive moment of inertia, got ", body.inertia, " in body ", b);
+	require(body.mass > 0 || !(body.responds_x || body.responds_y), "a body that responds to forces needs a positive mass, got ",
+		body.mass, " in body ", b);
+	require(body.inertia > 0 || !body.responds_spin, "a body that responds to torques needs a positive moment of inertia, got ",
+		body.inertia, " in body ", b);
 }
 
 void check_side(bool periodic, double low, double high, const char* name)
 {
-	require(!periodic || (std::isfinite(low) && std::isfinite(high) && high > low), "a periodic box must have ", name, "_high above ", name, "_low, got ", low, " and ", high);
+	require(!periodic || (std::isfinite(low) && std::isfinite(high) && high > low), "a periodic box must have ", name,
+		"_high above ", name, "_low, got ", low, " and ", high);
 }
 
 /// Leapfrog's limit of a damped oscillator.
@@ -70,7 +74,8 @@ struct StiffnessOf {
 	}
 	Stiffness operator()(const laws::HertzRestitution<Real>& l) const
 	{
-		const double k = 4.0 / 3 * l.effective_young * std::sqrt(radius), root = std::sqrt(overlap), fourth = std::sqrt(root), c = l.tangential_ratio;
+		const double k = 4.0 / 3 * l.effective_young * std::sqrt(radius), root = std::sqrt(overlap), fourth = std::sqrt(root),
+					 c = l.tangential_ratio;
 		return { 1.5 * k * root, c * k * root, std::sqrt(5.0) * l.damping_fraction * std::sqrt(mass * k) * fourth,
 			std::sqrt(10.0 / 3) * l.damping_fraction * std::sqrt(mass * c * k) * fourth };
 	}
@@ -95,7 +100,8 @@ void check_scene(const Scene& scene)
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) check_body(scene.bodies[b], b);
 	const double critical = critical_time_step(scene);
-	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical, ", got ", scene.dt, "; lower it or take softer grains");
+	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,
+		", got ", scene.dt, "; lower it or take softer grains");
 }
 
 double critical_time_step(const Scene& scene, double overlap)
@@ -104,9 +110,10 @@ double critical_time_step(const Scene& scene, double overlap)
 	for (const Grain& g : scene.grains) {
 		if (g.body != free_grain) continue;
 		const double mass = g.mass / 2, depth = overlap * g.radius;
-		const Stiffness k = std::visit(StiffnessOf { g.radius / 2, mass, depth }, scene.law);
+		const Stiffness k = std::visit(StiffnessOf{ g.radius / 2, mass, depth }, scene.law);
 		smallest = std::min(smallest, limit(k.normal, k.normal_dashpot, mass));
-		if (scene.friction && k.tangential > 0) smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, mass / (1 + scene.spin_response)));
+		if (scene.friction && k.tangential > 0)
+			smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, mass / (1 + scene.spin_response)));
 	}
 	return smallest;
 }
@@ -114,21 +121,31 @@ double critical_time_step(const Scene& scene, double overlap)
 void Stepper::check_pairs() const
 {
 	const auto where = [&](std::uint32_t row) {
-		return sentence("grain ", index_of[row], " at (", rows[row].x, ", ", rows[row].y, "), velocity (", rows[row].vx, ", ", rows[row].vy, ")");
+		return sentence("grain ", index_of[row], " at (", rows[row].x, ", ", rows[row].y, "), velocity (", rows[row].vx, ", ",
+			rows[row].vy, ")");
 	};
 	for (std::uint32_t i = 0; i < n_free; ++i) {
 		const double sum = rows[i].x + rows[i].y + rows[i].vx + rows[i].vy + rows[i].surface_speed;
-		if (!std::isfinite(sum)) throw std::runtime_error(sentence("step ", steps, ": ", where(i), " is not finite; likely the time step is too long or two grains were put into one place"));
+		if (!std::isfinite(sum))
+			throw std::runtime_error(sentence("step ", steps, ": ", where(i),
+				" is not finite; likely the time step is too long or two grains were put into one place"));
 	}
+	const auto is_led = [&](std::uint32_t row) {  // where it goes is nobody's force's doing
+		if (row < n_free) return false;
+		const RigidBody& body = scene.bodies[members[row - n_free].body];
+		return !body.responds_x && !body.responds_y;
+	};
 	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
-		if (!pairs.place[c]) continue;
 		const Candidate& pair = pairs.candidates[c];
+		if (!pairs.place[c] || (is_led(pair.first) && is_led(pair.second))) continue;
 		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
 		const Separation d = separation(a, b, scene.box);
-		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y), allowed = guards.largest_overlap * std::min(a.radius, b.radius);
+		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y),
+					 allowed = guards.largest_overlap * std::min(a.radius, b.radius);
 		if (!(overlap <= allowed))
-			throw std::runtime_error(sentence("step ", steps, ": ", where(pair.first), " and ", where(pair.second), " overlap by ", overlap / std::min(a.radius, b.radius),
-				" of a radius, more than ", guards.largest_overlap, "; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
+			throw std::runtime_error(sentence("step ", steps, ": ", where(pair.first), " and ", where(pair.second),
+				" overlap by ", overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
+				"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
 	}
 }
 

@@ -9,7 +9,7 @@ namespace graindrive::loop {
 
 using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>>;
 
-enum class Precision { double_, single };      ///< of the contacts; positions and velocities are always double
+enum class Precision { double_, single };  ///< of the contacts; positions and velocities are always double
 enum class Processor { avx512, avx2, portable };
 
 constexpr int pack_alignment = 32;  ///< pair lists begin and end at multiples of this many pairs: the widest pack
@@ -25,20 +25,20 @@ struct KernelData {
 	GrainRow* rows;
 	const PairLink* links;
 	const void *effective_radii, *effective_masses;  ///< of each pair [m], [kg]; double or float
-	void* slips;               ///< tangential springs [m], double or float; not read without friction
-	void* forces;              ///< PairForce<double> or <float>; forces[0] stays zero
-	const ForceSlots* slots;   ///< of free grains
+	void* slips;                                     ///< tangential springs [m], double or float; not read without friction
+	void* forces;                                    ///< PairForce<double> or <float>; forces[0] stays zero
+	const ForceSlots* slots;                         ///< of free grains
 	const Fold* folds;
 	const std::uint32_t* fold_sources;
 	const std::uint32_t* block_pair_end;  ///< by block of free grains: all pairs owned up to the block end before this
 	const std::uint32_t* block_fold_end;
-	double length_x, length_y;  ///< periods [m], 0 where not periodic
+	double length_x, length_y;                  ///< periods [m], 0 where not periodic
 	double inverse_length_x, inverse_length_y;  ///< [1/m], 0 where not periodic
-	double dt;                  ///< time step of the springs [s]
-	double kick;                ///< time over which forces act on velocities [s]
-	double drift;               ///< time over which velocities move positions [s]
-	double gravity_x, gravity_y;  ///< [m/s^2]
-	double spin_response;       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
+	double dt;                                  ///< time step of the springs [s]
+	double kick;                                ///< time over which forces act on velocities [s]
+	double drift;                               ///< time over which velocities move positions [s]
+	double gravity_x, gravity_y;                ///< [m/s^2]
+	double spin_response;                       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
 	const ContactLaw* law;
 };
 
@@ -52,7 +52,8 @@ struct Kernel {
 	/// Forces of the pairs [begin, end), a multiple of `pack_alignment` long; wrapped pairs take the nearest image.
 	void (*pairs)(const KernelData&, std::uint32_t begin, std::uint32_t end, bool wrapped);
 	/// Pairs owned by the blocks [begin, end) of free grains from pair `first_pair` on, each block moved as soon as its forces are known.
-	FastestSpeed (*sweep)(const KernelData&, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair);
+	FastestSpeed (*sweep)(
+		const KernelData&, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair);
 	Processor processor;
 	int width;  ///< pairs at once
 };

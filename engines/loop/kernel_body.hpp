@@ -20,7 +20,8 @@ struct PackForces {
 
 /// One pack of pairs: columns of row differences and sums -> forces on the owners.
 template <class Law, class S>
-inline PackForces<S> pack_forces(const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
+inline PackForces<S> pack_forces(
+	const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
 {
 	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3], &reach = column[4], &surface_speed = column[5];
 	const S zero(0);
@@ -40,7 +41,8 @@ inline PackForces<S> pack_forces(const Law& law, const S column[6], const S& eff
 
 	const auto response = law(contact, slip);
 	const S normal = select(touching, response.normal, zero), friction = select(touching, response.tangential, zero);
-	return { -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal, select(touching, response.slip, zero) };
+	return { -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal,
+		select(touching, response.slip, zero) };
 }
 
 template <class Law, class P, bool Friction>
@@ -54,7 +56,8 @@ struct Body {
 		S column[6];
 		Turn::template columns<Wrapped>(difference, data.links + at, column);
 		P* slips = static_cast<P*>(data.slips) + at;
-		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at), mass = S::load(static_cast<const P*>(data.effective_masses) + at);
+		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at),
+				mass = S::load(static_cast<const P*>(data.effective_masses) + at);
 		PackForces<S> f = pack_forces(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
 		if constexpr (Friction) f.slip.store(slips);
 		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
@@ -78,8 +81,10 @@ struct Body {
 		Two fastest = {};
 		std::uint32_t at = first_pair;
 		for (std::uint32_t block = begin; block < end; ++block) {
-			for (const std::uint32_t done = data.block_pair_end[block]; at < done; at += S::width) pack<false>(difference, data, law, at);
-			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0) fold(data, block);
+			for (const std::uint32_t done = data.block_pair_end[block]; at < done; at += S::width)
+				pack<false>(difference, data, law, at);
+			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
+				fold(data, block);
 			move_block(data, block * grains_per_block, std::min((block + 1) * grains_per_block, n_free), fastest);
 		}
 		return { std::sqrt(fastest[0]), std::sqrt(fastest[1]) };
@@ -95,7 +100,7 @@ private:
 	{
 		auto* forces = static_cast<PairForce<P>*>(data.forces);
 		for (std::uint32_t f = block > 0 ? data.block_fold_end[block - 1] : 0; f < data.block_fold_end[block]; ++f) {
-			PairForce<P> sum {};
+			PairForce<P> sum{};
 			for (std::uint32_t s = data.folds[f].begin; s < data.folds[f].end; ++s) {
 				const PairForce<P>& one = forces[data.fold_sources[s]];
 				sum = { sum.x + one.x, sum.y + one.y, sum.friction + one.friction, sum.normal + one.normal };
@@ -104,7 +109,10 @@ private:
 		}
 	}
 
-	static inline Four force_at(const char* forces, std::uint32_t bytes) { return *reinterpret_cast<const Four*>(forces + bytes); }
+	static inline Four force_at(const char* forces, std::uint32_t bytes)
+	{
+		return *reinterpret_cast<const Four*>(forces + bytes);
+	}
 
 	static inline void move_block(const KernelData& data, std::uint32_t begin, std::uint32_t end, Two& fastest)
 	{
@@ -139,11 +147,20 @@ private:
 };
 
 template <class P>
-laws::HertzHistory<P> narrow(const laws::HertzHistory<Real>& l) { return { P(l.k_n), P(l.k_t), P(l.gamma_n), P(l.gamma_t), P(l.mu) }; }
+laws::HertzHistory<P> narrow(const laws::HertzHistory<Real>& l)
+{
+	return { P(l.k_n), P(l.k_t), P(l.gamma_n), P(l.gamma_t), P(l.mu) };
+}
 template <class P>
-laws::HertzRestitution<P> narrow(const laws::HertzRestitution<Real>& l) { return { P(l.effective_young), P(l.tangential_ratio), P(l.damping_fraction), P(l.mu) }; }
+laws::HertzRestitution<P> narrow(const laws::HertzRestitution<Real>& l)
+{
+	return { P(l.effective_young), P(l.tangential_ratio), P(l.damping_fraction), P(l.mu) };
+}
 template <class P>
-laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l) { return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) }; }
+laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l)
+{
+	return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) };
+}
 
 template <template <class> class Law, class P, bool Friction>
 Kernel kernel_of()
@@ -155,17 +172,22 @@ Kernel kernel_of()
 template <class Law, class P, bool Friction>
 Law Body<Law, P, Friction>::narrowed(const KernelData& data)
 {
-	return std::visit([](const auto& stored) -> Law {
-		const auto candidate = narrow<P>(stored);
-		if constexpr (std::is_same_v<std::decay_t<decltype(candidate)>, Law>) return candidate;
-		else return Law {};
-	}, *data.law);
+	return std::visit(
+		[](const auto& stored) -> Law {
+			const auto candidate = narrow<P>(stored);
+			if constexpr (std::is_same_v<std::decay_t<decltype(candidate)>, Law>)
+				return candidate;
+			else
+				return Law{};
+		},
+		*data.law);
 }
 
 template <template <class> class Law>
 Kernel kernel_of(const KernelChoice& choice)
 {
-	if (choice.precision == Precision::single) return choice.friction ? kernel_of<Law, float, true>() : kernel_of<Law, float, false>();
+	if (choice.precision == Precision::single)
+		return choice.friction ? kernel_of<Law, float, true>() : kernel_of<Law, float, false>();
 	return choice.friction ? kernel_of<Law, double, true>() : kernel_of<Law, double, false>();
 }
 
@@ -173,9 +195,12 @@ Kernel kernel_of(const KernelChoice& choice)
 Kernel kernel_compiled_here(const KernelChoice& choice)
 {
 	switch (choice.law) {
-		case 0: return kernel_of<laws::HertzHistory>(choice);
-		case 1: return kernel_of<laws::HertzRestitution>(choice);
-		default: return kernel_of<laws::SpringDashpot>(choice);
+	case 0:
+		return kernel_of<laws::HertzHistory>(choice);
+	case 1:
+		return kernel_of<laws::HertzRestitution>(choice);
+	default:
+		return kernel_of<laws::SpringDashpot>(choice);
 	}
 }
 

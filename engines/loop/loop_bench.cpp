@@ -18,16 +18,17 @@ int main(int argc, char** argv)
 	Scene s;
 	std::ifstream in(argv[1]);
 	std::string line;
-	while (std::getline(in, line) && line.rfind("ITEM: ATOMS", 0) != 0) { }
+	while (std::getline(in, line) && line.rfind("ITEM: ATOMS", 0) != 0) {}
 	long id;
 	int type;
 	double diameter, mass, x, y, vx, vy, w;
 	s.bodies.push_back({});
-	while (in >> id >> type >> diameter >> mass >> x >> y >> vx >> vy >> w) s.grains.push_back({ x, y, vx, vy, w, diameter / 2, mass, type == 1 ? free_grain : 0 });
+	while (in >> id >> type >> diameter >> mass >> x >> y >> vx >> vy >> w)
+		s.grains.push_back({ x, y, vx, vy, w, diameter / 2, mass, type == 1 ? free_grain : 0 });
 	for (auto& g : s.grains)
 		if (g.body == 0) g.mass = HUGE_VAL;
 	s.box = { 0, std::atof(argv[2]), 0, 0, true, false };
-	s.law = laws::HertzHistory<Real> { 2e6, 2.46e6, 2500, 2500, 0.1 };
+	s.law = laws::HertzHistory<Real>{ 2e6, 2.46e6, 2500, 2500, 0.1 };
 	s.gravity_y = -1;
 	s.dt = 1e-4;
 	s.threads = argc > 4 ? std::atoi(argv[4]) : 1;
@@ -41,7 +42,9 @@ int main(int argc, char** argv)
 		loop.step(n / 10 - (k == 0));
 		if (argc > 6) std::printf("%ld %.15g\n", loop.steps_done(), loop.kinetic_energy_on_step());
 	}
-	const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count(), cpu = (std::clock() - c0) / double(CLOCKS_PER_SEC);
-	std::printf("%.1f M/s (cpu %.1f) ke %.15g  pairs %zu contacts %zu searches %ld selections %ld width %d\n", s.grains.size() * n / wall / 1e6, s.grains.size() * n / cpu / 1e6, loop.kinetic_energy_on_step(),
-		loop.pairs_selected(), loop.contacts().size(), loop.searches_done(), loop.selections_done(), loop.kernel_in_use().width);
+	const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count(),
+				 cpu = (std::clock() - c0) / double(CLOCKS_PER_SEC);
+	std::printf("%.1f M/s (cpu %.1f) ke %.15g  pairs %zu contacts %zu searches %ld selections %ld width %d\n",
+		s.grains.size() * n / wall / 1e6, s.grains.size() * n / cpu / 1e6, loop.kinetic_energy_on_step(), loop.pairs_selected(),
+		loop.contacts().size(), loop.searches_done(), loop.selections_done(), loop.kernel_in_use().width);
 }

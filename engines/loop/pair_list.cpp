@@ -30,7 +30,8 @@ void PairList::select(const GrainRow* rows, const Box& box, double gap)
 	}
 }
 
-void PairList::lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision kernel_precision, std::uint32_t dummy_row)
+void PairList::lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads,
+	Precision kernel_precision, std::uint32_t dummy_row)
 {
 	precision = kernel_precision;
 	place_pairs(rows, n_free, threads, dummy_row);
@@ -42,7 +43,7 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 {
 	const std::uint32_t blocks = (n_free + grains_per_block - 1) / grains_per_block;
 	const std::uint32_t room = padded(candidates.size()) + (threads + 3) * pack_alignment;
-	const PairLink dummy { dummy_row * row_bytes, (dummy_row + 1) * row_bytes };
+	const PairLink dummy{ dummy_row * row_bytes, (dummy_row + 1) * row_bytes };
 	place.assign(candidates.size(), 0);
 	links.assign(room, dummy);
 	slips.assign(room, 0.0);
@@ -59,7 +60,8 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 		links[next] = { pair.first * row_bytes, pair.second * row_bytes };
 		put(effective_radii, next, a.radius * b.radius / (a.radius + b.radius));
 		const double inverse_mass = a.inverse_mass + b.inverse_mass;
-		put(effective_masses, next, inverse_mass > 0 ? 1 / inverse_mass : 0);  // two infinite masses: neither answers, so nothing is damped
+		put(effective_masses, next,
+			inverse_mass > 0 ? 1 / inverse_mass : 0);  // two infinite masses: neither answers, so nothing is damped
 		put(slips, next, pair.slip);
 		place[candidate] = next++;
 	};
@@ -74,8 +76,10 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 			for (; c < candidates.size() && candidates[c].first < block_end; ++c) {
 				if (!candidates[c].near) continue;
 				const bool leaves_range = candidates[c].second >= range_end;  // to another thread's grain, or to a body's
-				if (candidates[c].wrapped || leaves_range) early.push_back(c);
-				else place_at_next(c);
+				if (candidates[c].wrapped || leaves_range)
+					early.push_back(c);
+				else
+					place_at_next(c);
 			}
 			block_pair_end[b] = next;
 		}
@@ -101,12 +105,14 @@ void PairList::fill_slots(std::uint32_t n_free)
 	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
 	used_owned.assign(n_free, 0);
 	used_partnered.assign(n_free, 0);
-	slots.assign(n_free, ForceSlots {});
+	slots.assign(n_free, ForceSlots{});
 	surplus.clear();
 	// A side with too many keeps its last slot for the fold of its surplus.
 	const auto give = [&](std::uint32_t grain, std::uint32_t at, std::uint8_t have, std::uint8_t& used, bool partner) {
-		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1) slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at * force_bytes;
-		else surplus.push_back({ grain, at, partner });
+		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1)
+			slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at * force_bytes;
+		else
+			surplus.push_back({ grain, at, partner });
 	};
 	for (std::uint32_t c = 0; c < candidates.size(); ++c) {
 		if (!place[c]) continue;
@@ -119,7 +125,9 @@ void PairList::fill_slots(std::uint32_t n_free)
 
 void PairList::fold_surplus(std::uint32_t next_place)
 {
-	const auto before = [](const Surplus& a, const Surplus& b) { return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner; };
+	const auto before = [](const Surplus& a, const Surplus& b) {
+		return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner;
+	};
 	std::stable_sort(surplus.begin(), surplus.end(), before);
 	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
 	folds.clear();
@@ -127,15 +135,17 @@ void PairList::fold_surplus(std::uint32_t next_place)
 	block_fold_end.assign(block_pair_end.size(), 0);
 	for (std::size_t s = 0; s < surplus.size();) {
 		const Surplus lead = surplus[s];
-		Fold fold { next_place++, static_cast<std::uint32_t>(fold_sources.size()), 0, lead.partner };
-		for (; s < surplus.size() && surplus[s].grain == lead.grain && surplus[s].partner == lead.partner; ++s) fold_sources.push_back(surplus[s].place);
+		Fold fold{ next_place++, static_cast<std::uint32_t>(fold_sources.size()), 0, lead.partner };
+		for (; s < surplus.size() && surplus[s].grain == lead.grain && surplus[s].partner == lead.partner; ++s)
+			fold_sources.push_back(surplus[s].place);
 		fold.end = fold_sources.size();
 		slots[lead.grain].at[(lead.partner ? ForceSlots::owned : 0) + ForceSlots::owned - 1] = fold.target * force_bytes;
 		folds.push_back(fold);
 		block_fold_end[lead.grain / grains_per_block] = folds.size();
 	}
-	for (std::size_t b = 1; b < block_fold_end.size(); ++b) block_fold_end[b] = std::max(block_fold_end[b], block_fold_end[b - 1]);
-	forces.assign(next_place, PairForce<double> {});
+	for (std::size_t b = 1; b < block_fold_end.size(); ++b)
+		block_fold_end[b] = std::max(block_fold_end[b], block_fold_end[b - 1]);
+	forces.assign(next_place, PairForce<double>{});
 }
 
 void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)
@@ -144,8 +154,8 @@ void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)
 	const auto each = [&](auto&& visit) {
 		for (std::uint32_t c = 0; c < candidates.size(); ++c) {
 			if (!place[c]) continue;
-			if (candidates[c].first >= n_free) visit(candidates[c].first - n_free, Share { c, false });
-			if (candidates[c].second >= n_free) visit(candidates[c].second - n_free, Share { c, true });
+			if (candidates[c].first >= n_free) visit(candidates[c].first - n_free, Share{ c, false });
+			if (candidates[c].second >= n_free) visit(candidates[c].second - n_free, Share{ c, true });
 		}
 	};
 	each([&](std::uint32_t member, Share) { ++member_begin[member + 1]; });
@@ -169,14 +179,17 @@ void PairList::put_back_slips()
 
 void PairList::put(AlignedVector<double>& list, std::uint32_t at, double number)
 {
-	if (precision == Precision::double_) list[at] = number;
-	else reinterpret_cast<float*>(list.data())[at] = static_cast<float>(number);
+	if (precision == Precision::double_)
+		list[at] = number;
+	else
+		reinterpret_cast<float*>(list.data())[at] = static_cast<float>(number);
 }
 
 double PairList::slip(std::uint32_t candidate) const
 {
 	if (!place[candidate]) return candidates[candidate].slip;
-	return precision == Precision::double_ ? slips[place[candidate]] : reinterpret_cast<const float*>(slips.data())[place[candidate]];
+	return precision == Precision::double_ ? slips[place[candidate]]
+	                                       : reinterpret_cast<const float*>(slips.data())[place[candidate]];
 }
 
 PairForce<double> PairList::force(std::uint32_t candidate) const

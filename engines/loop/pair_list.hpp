@@ -21,15 +21,17 @@ public:
 
 	/// Selects the candidates whose surfaces are nearer than `gap` [m], lays them out for `threads` and points the grains' slots at them.
 	void select(const GrainRow* rows, const Box& box, double gap);
-	void lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision, std::uint32_t dummy_row);
+	void lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision,
+		std::uint32_t dummy_row);
 	/// Brings the tangential springs of the selected pairs back into the candidates.
 	void keep_slips();
 	void put_back_slips();  ///< and into the kernels' memory again
 	void point(KernelData& data);
 
-	std::vector<SweepRange> sweeps;              ///< one per thread
-	std::uint32_t early_begin = 0, early_end = 0;  ///< pairs to be computed before anything moves: across threads or periodic sides, with bodies
-	std::vector<std::uint32_t> place;            ///< by candidate; 0 = not selected
+	std::vector<SweepRange> sweeps;  ///< one per thread
+	std::uint32_t early_begin = 0,
+				  early_end = 0;  ///< pairs to be computed before anything moves: across threads or periodic sides, with bodies
+	std::vector<std::uint32_t> place;  ///< by candidate; 0 = not selected
 
 	/// Forces on grains that do not move freely: by member, the places and which side of the pair it is.
 	struct Share {

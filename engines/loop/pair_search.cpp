@@ -72,10 +72,12 @@ struct Search {
 	{
 		const GrainRow& row = in.rows[member];
 		const double reach = row.radius + in.largest_free_radius + in.skin;
-		const auto s = range(grid.slow, grid.slow_of(row.x, row.y), reach), f = range(grid.fast, grid.fast_of(row.x, row.y), reach);
+		const auto s = range(grid.slow, grid.slow_of(row.x, row.y), reach),
+				   f = range(grid.fast, grid.fast_of(row.x, row.y), reach);
 		for (int to_s = s.first; to_s <= s.second; ++to_s)
 			for (int to_f = f.first; to_f <= f.second; ++to_f) {
-				const int c = grid.index((to_s % grid.slow.cells + grid.slow.cells) % grid.slow.cells, (to_f % grid.fast.cells + grid.fast.cells) % grid.fast.cells);
+				const int c = grid.index((to_s % grid.slow.cells + grid.slow.cells) % grid.slow.cells,
+					(to_f % grid.fast.cells + grid.fast.cells) % grid.fast.cells);
 				for (std::uint32_t a = grid.start[c]; a < grid.start[c + 1]; ++a) if_near_wrapped(a, member);
 			}
 	}
@@ -97,7 +99,9 @@ struct Search {
 
 void sort_by_owner(std::vector<Candidate>& pairs)
 {
-	const auto before = [](const Candidate& a, const Candidate& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; };
+	const auto before = [](const Candidate& a, const Candidate& b) {
+		return a.first != b.first ? a.first < b.first : a.second < b.second;
+	};
 	std::sort(pairs.begin(), pairs.end(), before);
 }
 
@@ -106,7 +110,8 @@ void sort_by_owner(std::vector<Candidate>& pairs)
 Separation separation(const GrainRow& a, const GrainRow& b, const Box& box)
 {
 	const double dx = b.x - a.x, dy = b.y - a.y;
-	const double nx = box.periodic_x ? nearest(dx, box.x_high - box.x_low) : dx, ny = box.periodic_y ? nearest(dy, box.y_high - box.y_low) : dy;
+	const double nx = box.periodic_x ? nearest(dx, box.x_high - box.x_low) : dx,
+				 ny = box.periodic_y ? nearest(dy, box.y_high - box.y_low) : dy;
 	return { nx, ny, nx != dx || ny != dy };
 }
 
@@ -116,10 +121,10 @@ void find_candidates(const SearchInput& in, const CellGrid& grid, std::vector<Ca
 	static thread_local std::vector<Candidate> others;
 	others.clear();
 	if (in.n_free > 0) {
-		Search { in, grid, candidates }.free_pairs();
-		for (std::uint32_t member = in.n_free; member < in.n_grains; ++member) Search { in, grid, others }.around_member(member);
+		Search{ in, grid, candidates }.free_pairs();
+		for (std::uint32_t member = in.n_free; member < in.n_grains; ++member) Search{ in, grid, others }.around_member(member);
 	}
-	if (Search { in, grid, others }.several_bodies_may_meet()) Search { in, grid, others }.between_members();
+	if (Search{ in, grid, others }.several_bodies_may_meet()) Search{ in, grid, others }.between_members();
 	candidates.insert(candidates.end(), others.begin(), others.end());
 	sort_by_owner(candidates);
 }

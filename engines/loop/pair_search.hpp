@@ -18,12 +18,12 @@ struct Candidate {
 struct SearchInput {
 	const GrainRow* rows;
 	std::uint32_t n_free, n_grains;
-	const int* body_of;               ///< by grain; `free_grain` for free ones
+	const int* body_of;  ///< by grain; `free_grain` for free ones
 	const std::vector<RigidBody>* bodies;
-	const std::vector<char>* fixed;   ///< by body: never moves, so two of them need no pair
+	const std::vector<char>* fixed;  ///< by body: never moves, so two of them need no pair
 	const Box* box;
-	double skin;                      ///< [m]
-	double largest_free_radius;       ///< [m]
+	double skin;                 ///< [m]
+	double largest_free_radius;  ///< [m]
 };
 
 /// All candidates, sorted by (first, second). `grid` must be sorted for the rows as they lie.

@@ -16,7 +16,8 @@ inline const double* row_at(const GrainRow* rows, std::uint32_t offset)
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 
 constexpr Processor compiled_for = Processor::avx512;
-constexpr int parts_at_once = 2;  // one pack waits on square roots most of the time; two overlap (measured: 1.16 times the rate of one, 1.06 times that of four)
+constexpr int parts_at_once =
+	2;  // one pack waits on square roots most of the time; two overlap (measured: 1.16 times the rate of one, 1.06 times that of four)
 
 /// Positions and velocities of the second row minus the first; the other columns are sums. One row, one register.
 struct RowDifference {
@@ -24,13 +25,17 @@ struct RowDifference {
 	__m512d signs = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1), length, inverse_length;
 
 	explicit RowDifference(const KernelData& data)
-		: rows(data.rows), length(_mm512_setr_pd(data.length_x, data.length_y, 0, 0, 0, 0, 0, 0)),
-		  inverse_length(_mm512_setr_pd(data.inverse_length_x, data.inverse_length_y, 0, 0, 0, 0, 0, 0)) { }
+		: rows(data.rows),
+		  length(_mm512_setr_pd(data.length_x, data.length_y, 0, 0, 0, 0, 0, 0)),
+		  inverse_length(_mm512_setr_pd(data.inverse_length_x, data.inverse_length_y, 0, 0, 0, 0, 0, 0))
+	{
+	}
 
 	template <bool Wrapped>
 	__m512d operator()(PairLink link) const
 	{
-		const __m512d d = _mm512_fmadd_pd(_mm512_load_pd(row_at(rows, link.first)), signs, _mm512_load_pd(row_at(rows, link.second)));
+		const __m512d d =
+			_mm512_fmadd_pd(_mm512_load_pd(row_at(rows, link.first)), signs, _mm512_load_pd(row_at(rows, link.second)));
 		if constexpr (!Wrapped) return d;
 		return _mm512_fnmadd_pd(length, _mm512_roundscale_pd(_mm512_mul_pd(d, inverse_length), 0), d);
 	}
@@ -79,7 +84,8 @@ struct Transposer<double> {
 		for (int n = 0; n < parts_at_once; ++n) {
 			const __m512d a = (__m512d)x.v[n], b = (__m512d)y.v[n], c = (__m512d)friction.v[n], d = (__m512d)normal.v[n];
 			__m512d rows[4];
-			transpose_lanes(_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), rows);
+			transpose_lanes(
+				_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), rows);
 			for (int q = 0; q < 4; ++q) _mm512_store_pd(reinterpret_cast<double*>(to + n * 8 + 2 * q), rows[q]);
 		}
 	}
@@ -129,8 +135,10 @@ struct Transposer<float> {
 private:
 	static void transpose_in_lanes(const __m512 in[4], __m512d out[4])
 	{
-		const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(in[0], in[1])), ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(in[0], in[1]));
-		const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(in[2], in[3])), cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(in[2], in[3]));
+		const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(in[0], in[1])),
+					  ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(in[0], in[1]));
+		const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(in[2], in[3])),
+					  cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(in[2], in[3]));
 		out[0] = _mm512_unpacklo_pd(ab_low, cd_low);
 		out[1] = _mm512_unpackhi_pd(ab_low, cd_low);
 		out[2] = _mm512_unpacklo_pd(ab_high, cd_high);
@@ -153,7 +161,11 @@ struct RowDifference {
 	double length[2], inverse_length[2];
 
 	explicit RowDifference(const KernelData& data)
-		: rows(data.rows), length { data.length_x, data.length_y }, inverse_length { data.inverse_length_x, data.inverse_length_y } { }
+		: rows(data.rows),
+		  length{ data.length_x, data.length_y },
+		  inverse_length{ data.inverse_length_x, data.inverse_length_y }
+	{
+	}
 
 	template <bool Wrapped>
 	double operator()(PairLink link, int column) const
@@ -174,12 +186,14 @@ struct Transposer {
 	static void columns(const RowDifference& difference, const PairLink* links, Number out[6])
 	{
 		for (int column = 0; column < 6; ++column)
-			for (int lane = 0; lane < Number::width; ++lane) out[column].v[0][lane] = P(difference.template operator()<Wrapped>(links[lane], column));
+			for (int lane = 0; lane < Number::width; ++lane)
+				out[column].v[0][lane] = P(difference.template operator()<Wrapped>(links[lane], column));
 	}
 
 	static void store(const Number& x, const Number& y, const Number& friction, const Number& normal, PairForce<P>* to)
 	{
-		for (int lane = 0; lane < Number::width; ++lane) to[lane] = { x.v[0][lane], y.v[0][lane], friction.v[0][lane], normal.v[0][lane] };
+		for (int lane = 0; lane < Number::width; ++lane)
+			to[lane] = { x.v[0][lane], y.v[0][lane], friction.v[0][lane], normal.v[0][lane] };
 	}
 };
 

@@ -11,21 +11,22 @@ namespace graindrive::loop {
 constexpr int free_grain = -1;  ///< `Grain::body` of a grain that belongs to no rigid body
 
 struct Grain {
-	double x = 0, y = 0;      ///< centre [m]
-	double vx = 0, vy = 0;    ///< velocity [m/s], half a step behind the position (leapfrog)
-	double spin = 0;          ///< angular velocity, counter-clockwise [rad/s]
-	double radius = 0;        ///< [m]
-	double mass = 0;          ///< [kg]; infinity lets a grain of a fixed body count with the partner's mass alone in m_eff
-	int body = free_grain;    ///< index in `Scene::bodies`, or `free_grain`
+	double x = 0, y = 0;    ///< centre [m]
+	double vx = 0, vy = 0;  ///< velocity [m/s], half a step behind the position (leapfrog)
+	double spin = 0;        ///< angular velocity, counter-clockwise [rad/s]
+	double radius = 0;      ///< [m]
+	double mass = 0;        ///< [kg]; infinity lets a grain of a fixed body count with the partner's mass alone in m_eff
+	int body = free_grain;  ///< index in `Scene::bodies`, or `free_grain`
 };
 
 /// Grains that move as one: a driven disk, a glued intruder, a drum, a wall or base of frozen grains.
 /// Members feel no contacts among themselves. A degree of freedom that does not respond keeps the velocity it is given.
 struct RigidBody {
-	double x = 0, y = 0, angle = 0;    ///< centre of mass [m], orientation [rad]
-	double vx = 0, vy = 0, spin = 0;   ///< [m/s], [rad/s]
-	double mass = 0, inertia = 0;      ///< [kg], [kg m^2]; needed where the body responds
+	double x = 0, y = 0, angle = 0;                                      ///< centre of mass [m], orientation [rad]
+	double vx = 0, vy = 0, spin = 0;                                     ///< [m/s], [rad/s]
+	double mass = 0, inertia = 0;                                        ///< [kg], [kg m^2]; needed where the body responds
 	bool responds_x = false, responds_y = false, responds_spin = false;  ///< to contacts and gravity
+	bool frozen = false;  ///< will never move: costs nothing, knows no forces, and meets no other frozen body
 	double force_x = 0, force_y = 0, torque = 0;  ///< by contacts, in the last step [N], [N m]
 };
 
@@ -39,14 +40,14 @@ struct Scene {
 	std::vector<RigidBody> bodies;
 	Box box;
 	ContactLaw law;
-	bool friction = true;       ///< off: no tangential force and no history
-	bool rotation = true;       ///< off: spins stay as they are
+	bool friction = true;                 ///< off: no tangential force and no history
+	bool rotation = true;                 ///< off: spins stay as they are
 	double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
-	double dt = 0;              ///< time step [s]
+	double dt = 0;                        ///< time step [s]
 	Precision precision = Precision::double_;
 	int threads = 1;
-	double spin_response = 2;   ///< m R^2 / I of free grains: 2 for disks
-	double skin = 0;            ///< how far beyond touching neighbours are listed [m]; 0 lets the loop choose
+	double spin_response = 2;  ///< m R^2 / I of free grains: 2 for disks
+	double skin = 0;           ///< how far beyond touching neighbours are listed [m]; 0 lets the loop choose
 };
 
 }  // namespace graindrive::loop

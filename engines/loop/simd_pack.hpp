@@ -82,7 +82,7 @@ struct Pack {
 	Pack() = default;
 	Pack(T number)
 	{
-		for (int n = 0; n < N; ++n) v[n] = number - Vector {};
+		for (int n = 0; n < N; ++n) v[n] = number - Vector{};
 	}
 
 	static Pack load(const T* from)
@@ -104,19 +104,40 @@ struct Pack {
 		return result;
 	}
 
-	friend Pack operator+(const Pack& a, const Pack& b) { return each([&](int n) { return a.v[n] + b.v[n]; }); }
-	friend Pack operator-(const Pack& a, const Pack& b) { return each([&](int n) { return a.v[n] - b.v[n]; }); }
-	friend Pack operator*(const Pack& a, const Pack& b) { return each([&](int n) { return a.v[n] * b.v[n]; }); }
-	friend Pack operator/(const Pack& a, const Pack& b) { return each([&](int n) { return a.v[n] / b.v[n]; }); }
-	friend Pack operator-(const Pack& a) { return each([&](int n) { return -a.v[n]; }); }
-	friend Mask operator<(const Pack& a, const Pack& b) { return Mask::each([&](int n) { return a.v[n] < b.v[n]; }); }
-	friend Mask operator>(const Pack& a, const Pack& b) { return Mask::each([&](int n) { return a.v[n] > b.v[n]; }); }
+	friend Pack operator+(const Pack& a, const Pack& b)
+	{
+		return each([&](int n) { return a.v[n] + b.v[n]; });
+	}
+	friend Pack operator-(const Pack& a, const Pack& b)
+	{
+		return each([&](int n) { return a.v[n] - b.v[n]; });
+	}
+	friend Pack operator*(const Pack& a, const Pack& b)
+	{
+		return each([&](int n) { return a.v[n] * b.v[n]; });
+	}
+	friend Pack operator/(const Pack& a, const Pack& b)
+	{
+		return each([&](int n) { return a.v[n] / b.v[n]; });
+	}
+	friend Pack operator-(const Pack& a)
+	{
+		return each([&](int n) { return -a.v[n]; });
+	}
+	friend Mask operator<(const Pack& a, const Pack& b)
+	{
+		return Mask::each([&](int n) { return a.v[n] < b.v[n]; });
+	}
+	friend Mask operator>(const Pack& a, const Pack& b)
+	{
+		return Mask::each([&](int n) { return a.v[n] > b.v[n]; });
+	}
 };
 
 template <class T, int W, int N>
 struct PackMask {
 	using Vector = typename VectorOf<T, W>::type;
-	decltype(Vector {} < Vector {}) m[N];
+	decltype(Vector{} < Vector{}) m[N];
 
 	template <class Comparison>
 	static PackMask each(const Comparison& of_part)
@@ -151,7 +172,7 @@ template <class T, int W, int N>
 Pack<T, W, N> abs(const Pack<T, W, N>& a)
 {
 	using Bits = typename VectorOf<std::conditional_t<sizeof(T) == 8, long long, int>, W>::type;
-	const Bits all_but_sign = (sizeof(T) == 8 ? 0x7fffffffffffffffLL : 0x7fffffffLL) - Bits {};
+	const Bits all_but_sign = (sizeof(T) == 8 ? 0x7fffffffffffffffLL : 0x7fffffffLL) - Bits{};
 	return Pack<T, W, N>::each([&](int n) { return (typename VectorOf<T, W>::type)((Bits)a.v[n] & all_but_sign); });
 }
 

@@ -10,13 +10,15 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_selections = 40;            // aimed at, where grains are fast
+constexpr double steps_between_selections = 40;              // aimed at, where grains are fast
 constexpr double smallest_gap = 0.002, smallest_skin = 0.1;  // [d]
 
 }  // namespace
 
 Stepper::Stepper(const Scene& given)
-	: scene(given), kernel(choose_kernel({ given.law.index(), given.friction, given.precision })), team(given.threads)
+	: scene(given),
+	  kernel(choose_kernel({ given.law.index(), given.friction, given.precision })),
+	  team(given.threads)
 {
 	check_scene(scene);
 	arrange_rows();
@@ -51,7 +53,7 @@ void Stepper::arrange_rows()
 			reach = std::max(reach, std::hypot(dx, dy) + g.radius);
 		}
 		body_reach.push_back(reach);
-		body_fixed.push_back(!body.responds_x && !body.responds_y && !body.responds_spin && body.vx == 0 && body.vy == 0 && body.spin == 0);
+		body_fixed.push_back(body.frozen);
 	}
 	body_members.push_back(members.size());
 	rows.resize(n_grains + 2);
@@ -75,6 +77,16 @@ void Stepper::step(long n)
 	team.run([&](int rank) { advance(rank, n); });
 	if (failure) std::rethrow_exception(failure);
 }
+
+void Stepper::set_time_step(double dt)
+{
+	Scene changed = scene;
+	changed.dt = dt;
+	check_scene(changed);
+	scene.dt = data.dt = data.kick = data.drift = dt;
+}
+
+void Stepper::set_springs(const std::vector<Spring>& springs) { given_springs = springs; }
 
 void Stepper::compute_body_forces()
 {
@@ -113,7 +125,9 @@ void Stepper::one_step(int rank, bool early_pairs_done)
 void Stepper::compute_early_pairs(int rank)
 {
 	const std::uint32_t packs = (pairs.early_end - pairs.early_begin) / pack_alignment;
-	const auto share = [&](int r) { return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / scene.threads) * pack_alignment; };
+	const auto share = [&](int r) {
+		return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / scene.threads) * pack_alignment;
+	};
 	kernel.pairs(data, share(rank), share(rank + 1), true);
 }
 

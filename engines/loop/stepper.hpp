@@ -9,12 +9,21 @@
 
 namespace graindrive::loop {
 
-/// A contact as it was in the last step. Forces act on `first`; on `second` they are opposite.
+/// A contact: forces as of the last step, where the grains are now. Forces act on `first`; on `second` they are opposite.
 struct Contact {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
-	double force_x, force_y;      ///< on first [N]
-	double normal, friction;      ///< F_n > 0 repels, F_t along z x n [N]
+	double n_x, n_y;              ///< from first to second
+	double point_x, point_y;      ///< on the surface of first [m]
+	double normal, friction;      ///< F_n > 0 repels, F_t along z x n on first [N]
+	double overlap;               ///< [m]
 	double slip;                  ///< tangential spring [m]
+	bool slipping;                ///< Coulomb's bound is active
+};
+
+/// The tangential spring of two grains; its sign does not change when they change places.
+struct Spring {
+	std::uint32_t first, second;  ///< indices in `Scene::grains`
+	double slip;                  ///< [m]
 };
 
 /// One contact on a member of a rigid body.
@@ -28,7 +37,7 @@ struct Touch {
 
 /// How a step is checked while it runs.
 struct Guards {
-	long every = 100;            ///< steps between two looks at every pair
+	long every = 100;              ///< steps between two looks at every pair
 	double largest_overlap = 0.1;  ///< of the smaller radius [-]
 };
 
@@ -59,15 +68,20 @@ public:
 
 	std::size_t size() const { return scene.grains.size(); }
 	Grain grain(std::size_t index) const;
-	void positions(double* xy) const;   ///< size() pairs, in the order of `Scene::grains`
+	void positions(double* xy) const;  ///< size() pairs, in the order of `Scene::grains`
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
 	std::vector<Contact> contacts() const;
 	/// Appends the contacts on a body, as of the last `compute_body_forces` or step.
 	void touches_on(std::size_t body, std::vector<Touch>& touches) const;
 
-	double kinetic_energy() const;          ///< of free grains, translation and rotation, at the half step [J]
-	double kinetic_energy_on_step();        ///< the same with the velocities of the whole step [J]
+	std::vector<Spring> springs() const;
+	void set_springs(const std::vector<Spring>& springs);  ///< before the first step
+	/// @throws std::invalid_argument where it exceeds the critical step
+	void set_time_step(double dt);
+
+	double kinetic_energy() const;    ///< of free grains, translation and rotation, at the half step [J]
+	double kinetic_energy_on_step();  ///< the same with the velocities of the whole step [J]
 
 	const Kernel& kernel_in_use() const { return kernel; }
 	long searches_done() const { return searches; }
@@ -78,20 +92,20 @@ public:
 private:
 	Scene scene;
 	Kernel kernel;
-	KernelData data {};
+	KernelData data{};
 	ThreadTeam team;
 	AlignedVector<GrainRow> rows;         // free grains by cell, members of bodies, two dummies
 	std::vector<std::uint32_t> index_of;  // place in memory -> index in Scene::grains
 	std::vector<std::uint32_t> row_of;    // and back
 	std::uint32_t n_free = 0, n_grains = 0;
-	std::vector<double> mass;             // by index
+	std::vector<double> mass;  // by index
 	PairList pairs;
 	CellGrid grid;
 	long steps = 0, searches = 0, selections = 0;
 
 	struct Member {
-		double x, y;               // from the body's centre at angle 0 [m]
-		double shift_x, shift_y;   // from the body's image to the one in the box [m]
+		double x, y;              // from the body's centre at angle 0 [m]
+		double shift_x, shift_y;  // from the body's image to the one in the box [m]
 		int body;
 	};
 	std::vector<Member> members;
@@ -108,6 +122,7 @@ private:
 
 	void arrange_rows();
 	void place_members(std::size_t body);
+	std::vector<Spring> given_springs;  // until the first search
 	bool body_forces_known = false;
 	Guards guards;
 
@@ -126,6 +141,7 @@ private:
 	void move_body(std::size_t body);
 	void collect_forces(std::size_t body);
 	double farthest_moved() const;
+	double slipping_bound() const;
 };
 
 }  // namespace graindrive::loop

@@ -8,7 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_searches = 300;            // aimed at, where grains are fast
+constexpr double steps_between_searches = 300;              // aimed at, where grains are fast
 constexpr double smallest_skin = 0.1, largest_skin = 0.35;  // [d]
 
 double into_box(double at, double low, double high) { return at - (high - low) * std::floor((at - low) / (high - low)); }
@@ -18,13 +18,18 @@ struct SpringBook {
 	std::vector<std::uint32_t> begin;
 	std::vector<std::pair<std::uint32_t, double>> entries;  // partner, slip
 
-	SpringBook(const std::vector<Candidate>& pairs, const std::vector<std::uint32_t>& new_row, std::uint32_t n_grains) : begin(n_grains + 2, 0)
+	SpringBook(const std::vector<Candidate>& pairs, const std::vector<std::uint32_t>& new_row, const std::vector<Spring>& given,
+		const std::vector<std::uint32_t>& row_of, std::uint32_t n_grains)
+		: begin(n_grains + 2, 0)
 	{
 		const auto each = [&](auto&& visit) {
+			for (const Spring& s : given)
+				visit(std::min(row_of[s.first], row_of[s.second]), std::max(row_of[s.first], row_of[s.second]), s.slip);
 			for (const Candidate& pair : pairs) {
 				if (pair.slip == 0) continue;
 				const std::uint32_t a = new_row[pair.first], b = new_row[pair.second];
-				visit(std::min(a, b), std::max(a, b), pair.slip);  // a spring has no side: its sign survives a swap of the two grains
+				visit(std::min(a, b), std::max(a, b),
+					pair.slip);  // a spring has no side: its sign survives a swap of the two grains
 			}
 		};
 		each([&](std::uint32_t owner, std::uint32_t, double) { ++begin[owner + 2]; });
@@ -84,13 +89,16 @@ void Stepper::sort_rows()
 		sorted[at] = rows[from];
 		sorted_index[at] = index_of[from];
 	}
-	const SpringBook springs(pairs.candidates, new_row, n_grains);
 	rows.swap(sorted);
 	index_of.swap(sorted_index);
 	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
+	const SpringBook springs(pairs.candidates, new_row, given_springs, row_of, n_grains);
+	given_springs.clear();
 	std::vector<int> body_of(n_grains, free_grain);
 	for (std::size_t m = 0; m < members.size(); ++m) body_of[n_free + m] = members[m].body;
-	find_candidates({ rows.data(), n_free, n_grains, body_of.data(), &scene.bodies, &body_fixed, &scene.box, skin, largest_free_radius }, grid, pairs.candidates);
+	find_candidates(
+		{ rows.data(), n_free, n_grains, body_of.data(), &scene.bodies, &body_fixed, &scene.box, skin, largest_free_radius },
+		grid, pairs.candidates);
 	for (Candidate& pair : pairs.candidates) pair.slip = springs.of(pair.first, pair.second);
 }
 

@@ -19,7 +19,8 @@ double difference_from_plain(const Scene& scene, int steps)
 	PlainLoop plain(scene);
 	for (int k = 0; k < steps; ++k) plain.step();
 	fast.step(steps);
-	return largest_difference(scene, [&](std::size_t i) { return fast.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
+	return largest_difference(
+		scene, [&](std::size_t i) { return fast.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
 }
 
 // Round-off of one step is 1e-16; forces of order 1e4 per unit mass over dt = 1e-4 and some tens of collision times let it grow to below this.
@@ -29,7 +30,8 @@ constexpr double grown_round_off = 1e-9;
 
 TEST(Stepper, follows_the_plain_loop_with_each_law)
 {
-	for (const ContactLaw& law : { ContactLaw(hertz()), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)), ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
+	for (const ContactLaw& law : { ContactLaw(hertz()), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)),
+			 ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
 		Scene scene = crowd(9, 1);
 		scene.law = law;
 		EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
@@ -51,8 +53,10 @@ TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
 {
 	Scene scene = crowd(9, 3);
 	scene.box.periodic_y = false;
-	for (std::size_t i = 0; i < 9; ++i) scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
-	for (std::size_t i = 9; i < scene.grains.size(); i += 7) scene.grains[i].radius *= 0.4;  // small ones have many neighbours' surplus to fold
+	for (std::size_t i = 0; i < 9; ++i)
+		scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
+	for (std::size_t i = 9; i < scene.grains.size(); i += 7)
+		scene.grains[i].radius *= 0.4;  // small ones have many neighbours' surplus to fold
 	scene.bodies.push_back({});
 	EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
 }
@@ -66,7 +70,9 @@ TEST(Stepper, springs_survive_searches_and_sorting)
 	a.step(600), b.step(600);
 	EXPECT_GT(a.searches_done(), 5 * b.searches_done());
 	// Only the order of sums differs; a lost spring would show as 1e-3.
-	EXPECT_LT(largest_difference(often, [&](std::size_t i) { return a.grain(i); }, [&](std::size_t i) { return b.grain(i); }), grown_round_off);
+	EXPECT_LT(largest_difference(
+				  often, [&](std::size_t i) { return a.grain(i); }, [&](std::size_t i) { return b.grain(i); }),
+		grown_round_off);
 }
 
 TEST(Stepper, gives_the_same_bits_on_any_number_of_threads_and_in_any_portions)
@@ -129,12 +135,15 @@ TEST(Stepper, processors_agree)
 		try {
 			Stepper other(scene);
 			other.step(300);
-			EXPECT_LT(largest_difference(scene, [&](std::size_t i) { return best.grain(i); }, [&](std::size_t i) { return other.grain(i); }), grown_round_off) << processor;
+			EXPECT_LT(largest_difference(
+						  scene, [&](std::size_t i) { return best.grain(i); }, [&](std::size_t i) { return other.grain(i); }),
+				grown_round_off)
+				<< processor;
 		} catch (const std::invalid_argument&) {  // this machine has no AVX2
 		}
 	}
 	setenv("GRAINDRIVE_PROCESSOR", "abacus", 1);
-	EXPECT_THROW(Stepper { scene }, std::invalid_argument);
+	EXPECT_THROW(Stepper{ scene }, std::invalid_argument);
 	unsetenv("GRAINDRIVE_PROCESSOR");
 }
 
@@ -158,14 +167,16 @@ TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain
 	scene.precision = Precision::single;
 	Stepper once(scene);
 	twice.step(100), once.step(100);
-	EXPECT_LT(largest_difference(scene, [&](std::size_t i) { return once.grain(i); }, [&](std::size_t i) { return twice.grain(i); }), 1e-3);
+	EXPECT_LT(largest_difference(
+				  scene, [&](std::size_t i) { return once.grain(i); }, [&](std::size_t i) { return twice.grain(i); }),
+		1e-3);
 }
 
 TEST(Stepper, refuses_what_cannot_run_and_says_why)
 {
 	const auto message = [](Scene scene) -> std::string {
 		try {
-			Stepper { scene };
+			Stepper{ scene };
 		} catch (const std::invalid_argument& error) {
 			return error.what();
 		}

@@ -8,7 +8,8 @@ namespace graindrive::loop {
 Grain Stepper::grain(std::size_t index) const
 {
 	const GrainRow& row = rows[row_of[index]];
-	return { row.x, row.y, row.vx, row.vy, row.surface_speed / row.radius, row.radius, scene.grains[index].mass, scene.grains[index].body };
+	return { row.x, row.y, row.vx, row.vy, row.surface_speed / row.radius, row.radius, scene.grains[index].mass,
+		scene.grains[index].body };
 }
 
 void Stepper::positions(double* xy) const
@@ -32,21 +33,54 @@ void Stepper::spins(double* spin) const
 	for (std::size_t i = 0; i < size(); ++i) spin[i] = rows[row_of[i]].surface_speed / rows[row_of[i]].radius;
 }
 
+namespace {
+
+/// n from the owner to its partner, from F = -F_n n + F_t (z x n) on the owner.
+Vector2r normal_of(const PairForce<double>& f)
+{
+	const double square = f.normal * f.normal + f.friction * f.friction;
+	return Vector2r(f.friction * f.y - f.normal * f.x, -f.friction * f.x - f.normal * f.y) / square;
+}
+
+}  // namespace
+
+/// |F_t| / |F_n| from which a contact counts as slipping, less the round-off of its precision.
+double Stepper::slipping_bound() const
+{
+	const double mu = std::visit([](const auto& law) { return law.mu; }, scene.law);
+	return scene.friction && mu > 0 ? mu * (scene.precision == Precision::single ? 1 - 1e-5 : 1 - 1e-12) : HUGE_VAL;
+}
+
 std::vector<Contact> Stepper::contacts() const
 {
 	std::vector<Contact> found;
+	const double bound = slipping_bound();
 	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
 		const PairForce<double> f = pairs.force(c);
-		if (f.x == 0 && f.y == 0) continue;
-		found.push_back({ index_of[pairs.candidates[c].first], index_of[pairs.candidates[c].second], f.x, f.y, f.normal, f.friction, pairs.slip(c) });
+		if (f.normal == 0 && f.friction == 0) continue;
+		const Candidate& pair = pairs.candidates[c];
+		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
+		const Separation d = separation(a, b, scene.box);
+		const Vector2r n = normal_of(f);
+		found.push_back({ index_of[pair.first], index_of[pair.second], n[0], n[1], a.x + a.radius * n[0], a.y + a.radius * n[1],
+			f.normal, f.friction, a.radius + b.radius - std::hypot(d.x, d.y), pairs.slip(c),
+			std::abs(f.friction) >= bound * std::abs(f.normal) });
 	}
+	return found;
+}
+
+std::vector<Spring> Stepper::springs() const
+{
+	std::vector<Spring> found;
+	for (std::uint32_t c = 0; c < pairs.place.size(); ++c)
+		if (const double slip = pairs.slip(c); slip != 0)
+			found.push_back({ index_of[pairs.candidates[c].first], index_of[pairs.candidates[c].second], slip });
 	return found;
 }
 
 void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 {
-	const double mu = std::visit([](const auto& law) { return law.mu; }, scene.law);
-	const double at_bound = mu * (scene.precision == Precision::single ? 1 - 1e-5 : 1 - 1e-12);  // round-off of the two precisions
+	const double bound = slipping_bound();
 	const RigidBody& body = scene.bodies[b];
 	const double c = std::cos(body.angle), s = std::sin(body.angle);
 	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
@@ -54,15 +88,12 @@ void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 		for (std::uint32_t k = pairs.member_begin[m]; k < pairs.member_begin[m + 1]; ++k) {
 			const PairList::Share share = pairs.member_shares[k];
 			const PairForce<double> f = pairs.force(share.candidate);
-			const double square = f.normal * f.normal + f.friction * f.friction;
-			if (square == 0) continue;
+			if (f.normal == 0 && f.friction == 0) continue;
 			const Candidate& pair = pairs.candidates[share.candidate];
-			// F = -F_n n + F_t (z x n) on the owner, solved for n; on the partner n turns round, F_t (z x n) with it.
-			const double side = share.partner ? -1 : 1;
-			const double n_x = side * (f.friction * f.y - f.normal * f.x) / square, n_y = -side * (f.friction * f.x + f.normal * f.y) / square;
+			const Vector2r n = share.partner ? Vector2r(-normal_of(f)) : normal_of(f);  // F_t along z x n turns round with n
 			touches.push_back({ index_of[n_free + m], index_of[share.partner ? pair.first : pair.second],
-				c * members[m].x - s * members[m].y + row.radius * n_x, s * members[m].x + c * members[m].y + row.radius * n_y, n_x, n_y,
-				f.normal, f.friction, mu > 0 && std::abs(f.friction) >= at_bound * std::abs(f.normal) });
+				c * members[m].x - s * members[m].y + row.radius * n[0], s * members[m].x + c * members[m].y + row.radius * n[1],
+				n[0], n[1], f.normal, f.friction, std::abs(f.friction) >= bound * std::abs(f.normal) });
 		}
 	}
 }

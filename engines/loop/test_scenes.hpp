@@ -39,7 +39,7 @@ inline Scene crowd(int side, unsigned seed, double speed = 1)
 class PlainLoop {
 public:
 	Scene s;
-	explicit PlainLoop(const Scene& scene) : s(scene) { }
+	explicit PlainLoop(const Scene& scene) : s(scene) {}
 
 	void step()
 	{
@@ -59,25 +59,32 @@ public:
 private:
 	std::map<std::pair<std::size_t, std::size_t>, double> slips;
 
-	static double nearest(double d, bool periodic, double length) { return periodic ? d - length * std::nearbyint(d / length) : d; }
+	static double nearest(double d, bool periodic, double length)
+	{
+		return periodic ? d - length * std::nearbyint(d / length) : d;
+	}
 
 	void pair(std::size_t i, std::size_t j, std::vector<double>& fx, std::vector<double>& fy, std::vector<double>& torque)
 	{
 		const Grain &a = s.grains[i], &b = s.grains[j];
-		const double dx = nearest(b.x - a.x, s.box.periodic_x, s.box.x_high - s.box.x_low), dy = nearest(b.y - a.y, s.box.periodic_y, s.box.y_high - s.box.y_low);
+		const double dx = nearest(b.x - a.x, s.box.periodic_x, s.box.x_high - s.box.x_low),
+					 dy = nearest(b.y - a.y, s.box.periodic_y, s.box.y_high - s.box.y_low);
 		const double r = std::hypot(dx, dy), overlap = a.radius + b.radius - r;
 		if (overlap <= 0) {
 			slips.erase({ i, j });
 			return;
 		}
 		const double nx = dx / r, ny = dy / r, dvx = b.vx - a.vx, dvy = b.vy - a.vy;
-		laws::Kinematics<Real, Real> contact { overlap, dvx * nx + dvy * ny, a.radius * a.spin + b.radius * b.spin - (dvy * nx - dvx * ny),
-			a.radius * b.radius / (a.radius + b.radius), a.mass * b.mass / (a.mass + b.mass), s.dt };
+		laws::Kinematics<Real, Real> contact{ overlap, dvx * nx + dvy * ny,
+			a.radius * a.spin + b.radius * b.spin - (dvy * nx - dvx * ny), a.radius * b.radius / (a.radius + b.radius),
+			a.mass * b.mass / (a.mass + b.mass), s.dt };
 		double& slip = slips[{ i, j }];
-		const auto answer = std::visit([&](const auto& law) -> std::array<double, 3> {
-			const auto response = law(contact, slip);
-			return { response.normal, response.tangential, response.slip };
-		}, s.law);
+		const auto answer = std::visit(
+			[&](const auto& law) -> std::array<double, 3> {
+				const auto response = law(contact, slip);
+				return { response.normal, response.tangential, response.slip };
+			},
+			s.law);
 		slip = answer[2];
 		const double x = -answer[0] * nx - answer[1] * ny, y = -answer[0] * ny + answer[1] * nx;
 		fx[i] += x, fy[i] += y, fx[j] -= x, fy[j] -= y;
@@ -89,12 +96,15 @@ private:
 template <class A, class B>
 double largest_difference(const Scene& scene, A&& grain_a, B&& grain_b)
 {
-	const auto wrap = [](double d, bool periodic, double length) { return periodic ? d - length * std::nearbyint(d / length) : d; };
+	const auto wrap = [](double d, bool periodic, double length) {
+		return periodic ? d - length * std::nearbyint(d / length) : d;
+	};
 	double largest = 0;
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) {
 		const Grain a = grain_a(i), b = grain_b(i);
 		for (const double d : { wrap(a.x - b.x, scene.box.periodic_x, scene.box.x_high - scene.box.x_low),
-				 wrap(a.y - b.y, scene.box.periodic_y, scene.box.y_high - scene.box.y_low), a.vx - b.vx, a.vy - b.vy, a.spin - b.spin })
+				 wrap(a.y - b.y, scene.box.periodic_y, scene.box.y_high - scene.box.y_low), a.vx - b.vx, a.vy - b.vy,
+				 a.spin - b.spin })
 			largest = std::max(largest, std::abs(d));
 	}
 	return largest;
@@ -105,7 +115,8 @@ inline bool same_bits(const Stepper& a, const Stepper& b)
 {
 	for (std::size_t i = 0; i < a.size(); ++i) {
 		const Grain one = a.grain(i), other = b.grain(i);
-		if (one.x != other.x || one.y != other.y || one.vx != other.vx || one.vy != other.vy || one.spin != other.spin) return false;
+		if (one.x != other.x || one.y != other.y || one.vx != other.vx || one.vy != other.vy || one.spin != other.spin)
+			return false;
 	}
 	return a.size() == b.size();
 }

@@ -10,8 +10,10 @@ void wait_until(const Done& done)
 {
 	constexpr int looks_before_yielding = 4000;  // some 20 microseconds
 	for (int looks = 0; !done(); ++looks) {
-		if (looks < looks_before_yielding) __builtin_ia32_pause();
-		else std::this_thread::yield();
+		if (looks < looks_before_yielding)
+			__builtin_ia32_pause();
+		else
+			std::this_thread::yield();
 	}
 }
 

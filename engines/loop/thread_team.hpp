@@ -26,11 +26,11 @@ private:
 	std::vector<std::thread> helpers;
 	std::mutex mutex;
 	std::condition_variable wake;
-	std::atomic<unsigned> round { 0 };
+	std::atomic<unsigned> round{ 0 };
 	const std::function<void(int)>* task = nullptr;
 	bool leaving = false;
-	alignas(64) std::atomic<int> arrived { 0 };
-	alignas(64) std::atomic<unsigned> generation { 0 };
+	alignas(64) std::atomic<int> arrived{ 0 };
+	alignas(64) std::atomic<unsigned> generation{ 0 };
 
 	void help(int rank);
 };

@@ -1,0 +1,83 @@
+/// GrainLoop: one YADE engine in place of collider, interaction loop and integrator, for disks in two dimensions.
+#pragma once
+#include <memory>
+
+#include "engines/base/contact_view.hpp"
+#include "engines/loop/stepper.hpp"
+#include "engines/loop/yade_scene.hpp"
+#include "engines/seam/registered.hpp"
+
+namespace graindrive {
+
+class GrainLoop : public Registered<GrainLoop>, public ContactSource {
+public:
+	static constexpr const char* class_name = "GrainLoop";
+	static const char* const documentation;
+	template <class Visit>
+	static void attributes(Visit&& visit)
+	{
+		using Self = GrainLoop;
+		visit("law", &Self::law,
+			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name");
+		visit("normalStiffness", &Self::normalStiffness, "K_n [Pa] (hertzHistory) or k_n [N/m] (springDashpot)");
+		visit("tangentialStiffness", &Self::tangentialStiffness, "K_t [Pa] or k_t [N/m]");
+		visit("normalDamping", &Self::normalDamping, "gamma_n [1/(m s)] (hertzHistory)");
+		visit("tangentialDamping", &Self::tangentialDamping, "gamma_t [1/(m s)] (hertzHistory)");
+		visit("young", &Self::young, "Young's modulus [Pa] (hertzRestitution)");
+		visit("poisson", &Self::poisson, "Poisson's ratio [-] (hertzRestitution)");
+		visit("restitution", &Self::restitution, "coefficient of restitution [-] (hertzRestitution, springDashpot)");
+		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 compiles friction and its history out");
+		visit("gravity", &Self::gravity, "acceleration [m/s^2]");
+		visit("periods", &Self::periods, "periods of the box in x and y [m], 0 where it is not periodic");
+		visit("precision", &Self::precision, "'double' or 'single': of the contacts; positions and velocities are always double");
+		visit("threads", &Self::threads, "number of threads; results have the same bits for any");
+		visit("skin", &Self::skin, "how far neighbours are listed [m]; 0 lets the loop choose");
+		visit("watched", &Self::watched,
+			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
+		visit(
+			"syncEvery", &Self::syncEvery, "write all bodies to YADE every so many steps; 0: at the end of O.run and by sync()");
+		visit("springs", &Self::springs, "id, id, tangential spring [m] of the contacts at the last sync, for O.save");
+	}
+	void check() const;
+	void action() override;
+
+	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
+	Wrench wrench_on(int body) override;
+
+	/// Writes the loop's state into all of YADE's bodies.
+	void sync();
+	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
+	void read();
+	void save_checkpoint(const std::string& path);
+	void restore_checkpoint(const std::string& path);
+	/// The running loop; made from YADE's bodies if there is none yet.
+	loop::Stepper& stepper();
+	const loop::YadeBodies& bodies() const { return map_; }
+
+	std::string law = "hertzHistory", precision = "double";
+	Real normalStiffness = 2e6, tangentialStiffness = 2.46e6, normalDamping = 2500, tangentialDamping = 2500;
+	Real young = 5e6, poisson = 0.45, restitution = 0.6, friction = 0.1, skin = 0;
+	Vector3r gravity = Vector3r::Zero(), periods = Vector3r::Zero();
+	int threads = 1;
+	long syncEvery = 0;
+	std::vector<int> watched;
+	std::vector<Real> springs;
+
+private:
+	std::unique_ptr<loop::Stepper> stepper_;
+	loop::YadeBodies map_;
+	yade::Scene* read_from_ = nullptr;
+	long run_end_ = -2;
+	std::vector<loop::Touch> touches_;
+
+	loop::ContactLaw contact_law() const;
+	loop::Scene settings() const;
+	void build();
+	void follow_bodies();
+	void write_bodies();
+	void release_what_moves();
+	bool last_step_of_run() const;
+	int body_index(int id);
+};
+
+}  // namespace graindrive

@@ -1,0 +1,123 @@
+/// Python binding of GrainLoop: grains and contacts as NumPy arrays.
+#include <boost/python/numpy.hpp>
+
+#include "engines/loop/GrainLoop.hpp"
+
+namespace graindrive {
+namespace {
+
+namespace py = boost::python;
+namespace np = boost::python::numpy;
+
+template <class T>
+np::ndarray array_of(const std::vector<T>& values, int width = 1)
+{
+	const long rows = long(values.size()) / width;
+	np::ndarray array = width > 1 ? np::zeros(py::make_tuple(rows, width), np::dtype::get_builtin<T>())
+	                              : np::zeros(py::make_tuple(rows), np::dtype::get_builtin<T>());
+	std::copy(values.begin(), values.end(), reinterpret_cast<T*>(array.get_data()));
+	return array;
+}
+
+/// YADE tells an engine its scene at every step; a call from Python may come before the first one.
+loop::Stepper& running(GrainLoop& loop)
+{
+	loop.scene = py::extract<yade::Scene*>(py::import("yade").attr("O").attr("_sceneObj"));
+	return loop.stepper();
+}
+
+np::ndarray ids(GrainLoop& loop)
+{
+	running(loop);
+	return array_of(loop.bodies().grain_id);
+}
+
+void restore(GrainLoop& loop, const std::string& path)
+{
+	loop.scene = py::extract<yade::Scene*>(py::import("yade").attr("O").attr("_sceneObj"));
+	loop.restore_checkpoint(path);
+}
+
+np::ndarray positions(GrainLoop& loop)
+{
+	std::vector<Real> xy(2 * running(loop).size());
+	running(loop).positions(xy.data());
+	return array_of(xy, 2);
+}
+
+np::ndarray velocities(GrainLoop& loop)
+{
+	std::vector<Real> xy(2 * running(loop).size());
+	running(loop).velocities(xy.data());
+	return array_of(xy, 2);
+}
+
+np::ndarray spins(GrainLoop& loop)
+{
+	std::vector<Real> spin(running(loop).size());
+	running(loop).spins(spin.data());
+	return array_of(spin);
+}
+
+/// The same columns as `contact_table`; forces act on j, as YADE's on body 2.
+py::dict contacts(GrainLoop& loop)
+{
+	std::vector<int> i, j, slipping;
+	std::vector<Real> point, normal, normal_force, tangential_force, overlap, slip;
+	for (const loop::Contact& c : running(loop).contacts()) {
+		i.push_back(loop.bodies().grain_id[c.first]), j.push_back(loop.bodies().grain_id[c.second]);
+		slipping.push_back(c.slipping), overlap.push_back(c.overlap), slip.push_back(c.slip);
+		point.insert(point.end(), { c.point_x, c.point_y, 0 });
+		normal.insert(normal.end(), { c.n_x, c.n_y, 0 });
+		normal_force.insert(normal_force.end(), { c.normal * c.n_x, c.normal * c.n_y, 0 });
+		tangential_force.insert(tangential_force.end(), { c.friction * c.n_y, -c.friction * c.n_x, 0 });
+	}
+	py::dict table;
+	table["i"] = array_of(i), table["j"] = array_of(j), table["slipping"] = array_of(slipping);
+	table["overlap"] = array_of(overlap), table["slip"] = array_of(slip);
+	table["point"] = array_of(point, 3), table["normal"] = array_of(normal, 3);
+	table["normal_force"] = array_of(normal_force, 3), table["tangential_force"] = array_of(tangential_force, 3);
+	return table;
+}
+
+Real kinetic_energy(GrainLoop& loop) { return running(loop).kinetic_energy(); }
+long searches(GrainLoop& loop) { return running(loop).searches_done(); }
+
+std::string processor(GrainLoop& loop)
+{
+	switch (running(loop).kernel_in_use().processor) {
+	case loop::Processor::avx512:
+		return "avx512";
+	case loop::Processor::avx2:
+		return "avx2";
+	default:
+		return "portable";
+	}
+}
+
+}  // namespace
+
+void bind_loop()
+{
+	np::initialize();
+	auto cls = seam::bind<GrainLoop>(GrainLoop::documentation);
+	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all disks into O.bodies.");
+	cls.def("read", &GrainLoop::read,
+		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
+	cls.def("contacts", contacts,
+		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
+		"normal_force and tangential_force on j [N], shape (n, 3).");
+	cls.def("checkpoint", &GrainLoop::save_checkpoint, (py::arg("path")),
+		"Write the loop's whole state into one file; a run restored from it goes on to the last bit.");
+	cls.def("restore", restore, (py::arg("path")),
+		"Go on from a checkpoint of the same scene; raises RuntimeError with the reason if the file cannot be trusted.");
+	cls.add_property("ids", ids, "ids of the disks, in the order of positions, velocities and spins, shape (n,)");
+	cls.add_property("positions", positions, "centres [m], shape (n, 2); inside the periodic box");
+	cls.add_property("velocities", velocities, "velocities, half a step behind [m/s], shape (n, 2)");
+	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,)");
+	cls.add_property("kineticEnergy", kinetic_energy, "of the free disks, translation and rotation [J]");
+	cls.add_property("searches", searches, "searches for neighbours so far");
+	cls.add_property("processor", processor, "instructions in use: 'avx512', 'avx2' or 'portable'");
+}
+
+}  // namespace graindrive

@@ -1,0 +1,119 @@
+/// Moves a YADE scene of disks into the loop and back.
+#include "engines/loop/yade_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double large = 1.5;  // times the median radius: such a disk would widen every cell of the search
+
+using yade::State;
+
+double angle_of(const State& state) { return 2 * std::atan2(state.ori.z(), state.ori.w()); }
+
+double median_radius(const yade::BodyContainer& bodies)
+{
+	std::vector<double> radii;
+	for (std::size_t id = 0; id < bodies.size(); ++id)
+		if (bodies.exists(int(id)))
+			if (const auto* disk = dynamic_cast<const yade::Sphere*>(bodies[id]->shape.get())) radii.push_back(disk->radius);
+	if (radii.empty()) throw std::invalid_argument("GrainLoop needs at least one disk in O.bodies, got none");
+	std::nth_element(radii.begin(), radii.begin() + radii.size() / 2, radii.end());
+	return radii[radii.size() / 2];
+}
+
+RigidBody rigid(const State& state)
+{
+	RigidBody body;
+	body.x = state.pos[0], body.y = state.pos[1], body.angle = angle_of(state);
+	body.mass = state.mass, body.inertia = state.inertia[2];
+	read_state(state, body);
+	return body;
+}
+
+Grain grain(const yade::Body& body, double radius, double mass, int owner)
+{
+	const State& s = *body.state;
+	Grain g;
+	g.x = s.pos[0], g.y = s.pos[1], g.vx = s.vel[0], g.vy = s.vel[1], g.spin = s.angVel[2];
+	g.radius = radius, g.mass = mass, g.body = owner;
+	return g;
+}
+
+}  // namespace
+
+bool is_frozen(const State& state)
+{
+	return state.blockedDOFs == State::DOF_ALL && state.vel.isZero(0) && state.angVel.isZero(0);
+}
+
+void read_state(const State& state, RigidBody& body)
+{
+	body.vx = state.vel[0], body.vy = state.vel[1], body.spin = state.angVel[2];
+	body.responds_x = !(state.blockedDOFs & State::DOF_X);
+	body.responds_y = !(state.blockedDOFs & State::DOF_Y);
+	body.responds_spin = !(state.blockedDOFs & State::DOF_RZ) && body.inertia > 0;
+}
+
+void write_state(const RigidBody& body, State& state)
+{
+	state.pos[0] = body.x, state.pos[1] = body.y;
+	state.vel[0] = body.vx, state.vel[1] = body.vy;
+	state.angVel[2] = body.spin;
+	state.angMom[2] = body.spin * state.inertia[2];
+	state.ori = Quaternionr(std::cos(body.angle / 2), 0, 0, std::sin(body.angle / 2));
+}
+
+YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watched, Scene& scene)
+{
+	const yade::BodyContainer& bodies = *yade_scene.bodies;
+	YadeBodies map;
+	map.known_bodies = bodies.size();
+	map.grain_of_id.assign(bodies.size(), -1);
+	map.body_of_id.assign(bodies.size(), -1);
+	const double largest = large * median_radius(bodies);
+	int frozen = -1;
+	const auto new_body = [&](int id, const RigidBody& body) {
+		scene.bodies.push_back(body);
+		map.body_id.push_back(id);
+		return int(scene.bodies.size()) - 1;
+	};
+	for (std::size_t id = 0; id < bodies.size(); ++id)
+		if (bodies.exists(int(id)) && bodies[id]->isClump()) map.body_of_id[id] = new_body(int(id), rigid(*bodies[id]->state));
+	for (std::size_t id = 0; id < bodies.size(); ++id) {
+		if (!bodies.exists(int(id)) || bodies[id]->isClump()) continue;
+		const yade::Body& body = *bodies[id];
+		const auto* disk = dynamic_cast<const yade::Sphere*>(body.shape.get());
+		if (!disk)
+			throw std::invalid_argument("GrainLoop moves disks and clumps of disks only; body " + std::to_string(id) +
+										" has another shape: remove it, or use YADE's own loop");
+		const State& state = *body.state;
+		const bool watch = std::count(watched.begin(), watched.end(), int(id)) > 0;
+		int owner = free_grain;
+		double mass = state.mass;
+		if (body.isClumpMember()) {
+			owner = map.body_of_id[body.clumpId];
+			mass = is_frozen(*bodies[body.clumpId]->state) ? HUGE_VAL : scene.bodies[owner].mass;
+		} else if (is_frozen(state) && !watch) {
+			if (frozen < 0) {
+				RigidBody wall;
+				wall.frozen = true;
+				frozen = new_body(-1, wall);
+			}
+			owner = frozen;
+			mass = HUGE_VAL;
+		} else if (watch || (state.blockedDOFs & (State::DOF_X | State::DOF_Y | State::DOF_RZ)) || disk->radius > largest) {
+			owner = map.body_of_id[id] = new_body(int(id), rigid(state));
+			if (is_frozen(state)) mass = HUGE_VAL;
+		}
+		map.grain_of_id[id] = int(scene.grains.size());
+		map.grain_id.push_back(int(id));
+		scene.grains.push_back(grain(body, disk->radius, mass, owner));
+	}
+	return map;
+}
+
+}  // namespace graindrive::loop
