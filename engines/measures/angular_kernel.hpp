@@ -36,7 +36,7 @@ public:
 			out.push_back({ nearest, 1 });
 			return;
 		}
-		const int reach = std::min(count_ / 2, int(std::ceil(8.9 * width_ / spacing_)));
+		const int reach = int(std::ceil(8.9 * width_ / spacing_)); // a wide one goes round more than once
 		// w(m+1)/w(m) falls geometrically, so two exponentials serve a whole side.
 		const Real offset = (place - Real(0.5) - nearest) * spacing_, a = Real(1) / (2 * width_ * width_);
 		const Real peak = std::sqrt(2 * pi) / (count_ * width_) * std::exp(-a * offset * offset);
@@ -45,8 +45,7 @@ public:
 		out.push_back({ nearest, peak });
 		for (const int side : { +1, -1 }) {
 			Real weight = peak, ratio = first * (side > 0 ? slope : 1 / slope);
-			const int last = side > 0 ? reach : std::min(reach, count_ - 1 - reach);
-			for (int k = 1; k <= last; ++k) {
+			for (int k = 1; k <= reach; ++k) {
 				weight *= ratio;
 				ratio *= fall;
 				out.push_back({ ((nearest + side * k) % count_ + count_) % count_, weight });
