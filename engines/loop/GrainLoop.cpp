@@ -8,16 +8,16 @@
 namespace graindrive {
 
 const char* const GrainLoop::documentation = "Collider, contact law and integrator in one, for disks in the plane z = const: the "
-                                             "same physics as YADE's loop with the Law2_ functor\n"
+											 "same physics as YADE's loop with the Law2_ functor\n"
 											 "of the same name, many times faster.\n\n"
 											 "Stands last in O.engines, after measures and drives: O.engines = "
-                                             "[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
+											 "[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
 											 "Clumps, and disks that are driven, partly blocked, large or `watched`, are written "
-                                             "to YADE at every step; all others at the end of\n"
+											 "to YADE at every step; all others at the end of\n"
 											 "O.run, every `syncEvery` steps and by sync(). What Python writes into a free disk "
-                                             "is seen after read(). Orientations of free disks\n"
+											 "is seen after read(). Orientations of free disks\n"
 											 "are not kept. Raises ValueError for shapes other than disks, a time step above the "
-                                             "critical one and numbers out of range; a guard\n"
+											 "critical one and numbers out of range; a guard\n"
 											 "stops the run where grains overlap by more than a tenth of a radius.";
 
 void GrainLoop::check() const
@@ -65,7 +65,7 @@ void GrainLoop::build()
 	loop::Scene s = settings();
 	if (scene->isPeriodic && periods.isZero(0))
 		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
-		                            "e.g. periods=(O.cell.size[0], 0, 0)");
+									"e.g. periods=(O.cell.size[0], 0, 0)");
 	map_ = loop::read_yade(*scene, watched, s);
 	std::vector<loop::Spring> carried;
 	for (std::size_t k = 0; k + 2 < springs.size(); k += 3) {
@@ -161,6 +161,12 @@ void GrainLoop::sync()
 	springs.clear();
 	for (const loop::Spring& s : stepper_->springs())
 		springs.insert(springs.end(), { Real(map_.grain_id[s.first]), Real(map_.grain_id[s.second]), s.slip });
+}
+
+void GrainLoop::begin_on_step()
+{
+	stepper().begin_on_step();
+	write_bodies();
 }
 
 void GrainLoop::read() { stepper_.reset(); }

@@ -46,6 +46,8 @@ public:
 
 	/// Writes the loop's state into all of YADE's bodies.
 	void sync();
+	/// For velocities of O.bodies that belong to the step itself, not half a step behind: takes the first step with half a kick.
+	void begin_on_step();
 	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
 	void read();
 	void save_checkpoint(const std::string& path);

@@ -81,6 +81,12 @@ py::dict contacts(GrainLoop& loop)
 }
 
 Real kinetic_energy(GrainLoop& loop) { return running(loop).kinetic_energy(); }
+Real kinetic_energy_on_step(GrainLoop& loop) { return running(loop).kinetic_energy_on_step(); }
+void begin_on_step(GrainLoop& loop)
+{
+	running(loop);
+	loop.begin_on_step();
+}
 long searches(GrainLoop& loop) { return running(loop).searches_done(); }
 
 std::string processor(GrainLoop& loop)
@@ -115,6 +121,10 @@ void bind_loop()
 	cls.add_property("positions", positions, "centres [m], shape (n, 2); inside the periodic box");
 	cls.add_property("velocities", velocities, "velocities, half a step behind [m/s], shape (n, 2)");
 	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,)");
+	cls.def("beginOnStep", begin_on_step,
+		"For velocities of O.bodies that belong to the step itself, not half a step behind (LAMMPS): takes one step with half a "
+	    "kick.");
+	cls.def("kineticEnergyOnStep", kinetic_energy_on_step, "Kinetic energy with the velocities of the whole step [J].");
 	cls.add_property("kineticEnergy", kinetic_energy, "of the free disks, translation and rotation [J]");
 	cls.add_property("searches", searches, "searches for neighbours so far");
 	cls.add_property("processor", processor, "instructions in use: 'avx512', 'avx2' or 'portable'");

@@ -1,0 +1,219 @@
+"""Times GrainLoop against LAMMPS and YADE's loop, alternating, and prints median ratios.
+
+usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N]
+
+  --json        a list of {scene, law, precision, threads, peer, ours, theirs, ratio}, rates in particle-steps/s
+  --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150; without it all of them, in that order
+  --quick       bed10k only, short runs: about a minute once its bed is in the cache
+  --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
+
+One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
+whose kinetic energies differ after the first portion gets no ratio.
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from . import lammps
+from .scenes import FREE, SCENES, scene
+
+# Largest relative difference of kinetic energy after the first portion, by law. Hertz: the same arithmetic from the same
+# state, and LAMMPS's first slip of moving starts (1e-6). Drum: LAMMPS damps by m_eff gamma and lets springs slip otherwise:
+# alike, not equal.
+SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05}
+YADE_SHARE = 100  # YADE's loop gets a hundredth of the steps
+
+
+class Ours:
+    """A scene in a process of its own, on GrainLoop ("grain") or on YADE's loop ("yade")."""
+
+    def __init__(self, path, which, **settings):
+        command = [sys.executable, "-m", "graindrive.benchmark.ours", path, which, json.dumps(settings)]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def run(self, steps):
+        """Go on by some steps; return what the worker says."""
+        self.process.stdin.write(f"{steps}\n")
+        self.process.stdin.flush()
+        for line in self.process.stdout:
+            if line.startswith("{"):
+                return json.loads(line)
+        raise RuntimeError("the worker that runs GrainLoop or YADE's loop died; its words are above")
+
+    def close(self):
+        self.process.kill()  # nothing is lost: it only answers
+        self.process.wait()
+
+
+def rate(result, particles, steps, threads):
+    """Return particle-steps per second: of processor time on one core, of wall time on several."""
+    return particles * steps / result["cpu" if threads == 1 else "wall"]
+
+
+def differs(ours, theirs, tolerance):
+    """Return why two kinetic energies are not of the same scene, or None."""
+    difference = abs(ours - theirs) / max(abs(theirs), 1e-300)
+    return (
+        None
+        if difference <= tolerance
+        else f"kinetic energies {ours:.10g} and {theirs:.10g} differ by {difference:.1e}"
+    )
+
+
+def row(name, a_scene, threads, peer, ours, theirs, precision="double"):
+    """Return one line of the table from lists of rates taken alternately."""
+    ratios = [a / b for a, b in zip(ours, theirs)]
+    return dict(
+        scene=name,
+        law=str(a_scene["law"]),
+        precision=precision,
+        threads=threads,
+        peer=peer,
+        ours=statistics.median(ours),
+        theirs=statistics.median(theirs),
+        ratio=statistics.median(ratios),
+    )
+
+
+def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
+    """Return the row against LAMMPS on as many ranks as threads; None, with the reason on standard error, if it differs."""
+    ours, theirs, particles = [], [], len(a_scene["x"])
+    worker = Ours(path, "grain", threads=threads)
+    try:
+        for k in range(rounds):
+            peer = lammps.run(a_scene, folder, steps, threads)
+            own = worker.run(steps if k else steps - 1)  # beginning on the step was the first
+            reason = differs(own["energy"], peer["energy"], SAME[str(a_scene["law"])]) if k == 0 else None
+            if reason:
+                print(f"{name}: no ratio against LAMMPS: {reason}", file=sys.stderr)
+                return None
+            ours.append(rate(own, particles, steps if k else steps - 1, threads))
+            theirs.append(rate(peer, particles, steps, threads))
+    finally:
+        worker.close()
+    return row(name, a_scene, threads, "LAMMPS" if threads == 1 else f"LAMMPS, {threads} ranks", ours, theirs)
+
+
+def against_yade(name, a_scene, path, rounds, steps):
+    """Return the row against YADE's own loop on one core."""
+    few = max(10, steps // YADE_SHARE)
+    twin, own, peer = Ours(path, "grain", onStep=False), Ours(path, "grain", onStep=False), Ours(path, "yade")
+    ours, theirs, particles = [], [], len(a_scene["x"])
+    try:
+        for k in range(rounds):
+            slow, fast = peer.run(few), own.run(steps)
+            reason = differs(twin.run(few)["half_step"], slow["half_step"], SAME["hertzHistory"]) if k == 0 else None
+            if reason:
+                print(f"{name}: no ratio against YADE's loop: {reason}", file=sys.stderr)
+                return None
+            ours.append(rate(fast, particles, steps, 1))
+            theirs.append(rate(slow, particles, few, 1))
+    finally:
+        for worker in (twin, own, peer):
+            worker.close()
+    return row(name, a_scene, 1, "YADE's loop", ours, theirs)
+
+
+def against_double(name, a_scene, path, rounds, steps):
+    """Return the row of single against double precision."""
+    single, double = Ours(path, "grain", precision="single"), Ours(path, "grain")
+    particles = len(a_scene["x"])
+    try:
+        pairs = [
+            (rate(single.run(steps), particles, steps, 1), rate(double.run(steps), particles, steps, 1))
+            for _ in range(rounds)
+        ]
+    finally:
+        single.close(), double.close()
+    return row(name, a_scene, 1, "own double", *zip(*pairs), precision="single")
+
+
+def against_small_bed(name, a_scene, path, rounds, steps, folder):
+    """Return the row of the large bed against our own rate on bed10k."""
+    small = scene("bed10k")
+    small_path = save(small, folder, "small.npz")
+    large, little = Ours(path, "grain"), Ours(small_path, "grain")
+    try:
+        pairs = [
+            (
+                rate(large.run(steps), len(a_scene["x"]), steps, 1),
+                rate(little.run(6 * steps), len(small["x"]), 6 * steps, 1),
+            )
+            for _ in range(rounds)
+        ]
+    finally:
+        large.close(), little.close()
+    return row(name, a_scene, 1, "own bed10k", *zip(*pairs))
+
+
+def save(a_scene, folder, file_name):
+    """Write a scene for a worker; return the path."""
+    path = os.path.join(folder, file_name)
+    np.savez(path, **a_scene)
+    return path
+
+
+def measure(name, quick, threads):
+    """Yield the rows of one scene."""
+    a_scene = scene(name)
+    a_scene["kind"] = a_scene["kind"].astype(int)
+    rounds, steps = (3, 1000) if quick else (5, 3000)
+    if np.sum(a_scene["kind"] == FREE) > 20_000:
+        steps //= 3
+    with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
+        path = save(a_scene, folder, "scene.npz")
+        if lammps.available():
+            lammps.write(a_scene, folder)
+            for n in range(1, threads + 1):
+                yield against_lammps(name, a_scene, path, folder, n, rounds, steps)
+        else:
+            print("LAMMPS is not installed (Debian's package lammps); no ratio against it", file=sys.stderr)
+        if name == "bed10k":
+            yield against_double(name, a_scene, path, rounds, 2 * steps)
+            yield against_yade(name, a_scene, path, 3, 2 * steps)
+        if name == "wiggle63k":
+            yield against_small_bed(name, a_scene, path, rounds, steps, folder)
+
+
+def print_row(entry):
+    """Print one line of the table."""
+    columns = "{scene:14} {law:14} {precision:7} {threads:7d} {peer:16} {ours:8.1f} {theirs:8.2f} {ratio:7.2f}"
+    print(columns.format(**{**entry, "ours": entry["ours"] / 1e6, "theirs": entry["theirs"] / 1e6}), flush=True)
+
+
+def main(arguments=None):
+    """Entry of scripts/bench; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="scripts/bench", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--scene", choices=sorted(SCENES))
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--threads", type=int, default=2)
+    chosen = parser.parse_args(arguments)
+    names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else list(SCENES)
+    if not chosen.json:
+        print("scene          law            precis. threads peer             ours M/s   theirs   ratio", flush=True)
+    rows = []
+    for name in names:
+        for entry in measure(name, chosen.quick, chosen.threads):
+            if entry is None:
+                continue
+            rows.append(entry)
+            if not chosen.json:
+                print_row(entry)
+    if chosen.json:
+        json.dump(rows, sys.stdout, indent=1)
+        print()
+    return 0 if rows else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

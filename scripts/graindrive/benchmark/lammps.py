@@ -1,0 +1,132 @@
+"""The same scene in LAMMPS: data file, input, one run, and what its log says."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from .ours import DRUM_MASS
+from .scenes import DRIVEN
+
+# Three traps: 2D `read_data` takes a sphere's mass until `set density/disc`; two ranks need `processors 2 1 1` for a wide
+# bed; without `disc` nve/sphere turns spheres. erotate/sphere knows spheres only: a disk's energy is 5/4 of what it says.
+INPUT = """
+units lj
+dimension 2
+boundary {boundary} f p
+processors {ranks} 1 1
+atom_style sphere
+comm_modify vel yes
+read_data {data}
+set group all density/disc {density}
+group wall type 2
+group driven type 3
+group led type 2 3
+group free type 1
+{masses}
+neighbor {skin} bin
+neigh_modify delay 0 every 1 check yes exclude group wall wall
+{pair}
+pair_coeff * *
+timestep {dt}
+fix weight free gravity {gravity} vector 0 -1 0
+fix move free nve/sphere disc
+{walls}
+fix plane all enforce2d
+compute slide free ke
+compute turn free erotate/sphere
+thermo {steps}
+thermo_style custom step c_slide c_turn
+thermo_modify lost error norm no format float %.15g
+run {steps}
+"""
+
+
+def available():
+    """Return LAMMPS's command, or None."""
+    return shutil.which("lmp")
+
+
+def write(a_scene, folder):
+    """Write the data file of a scene."""
+    kind, r = a_scene["kind"], a_scene["r"]
+    margin = 20 * r.max()
+    low, high = a_scene["y"].min() - margin, a_scene["y"].max() + margin
+    left, right = (
+        (0, a_scene["period"]) if a_scene["period"] > 0 else (a_scene["x"].min() - margin, a_scene["x"].max() + margin)
+    )
+    x = a_scene["x"] % a_scene["period"] if a_scene["period"] > 0 else a_scene["x"]
+    lines = [
+        f"scene\n\n{len(r)} atoms\n3 atom types\n\n{left:.17g} {right:.17g} xlo xhi\n{low:.17g} {high:.17g} ylo yhi"
+    ]
+    lines.append("-0.5 0.5 zlo zhi\n\nAtoms # sphere\n")
+    lines += [f"{i + 1} {kind[i] + 1} {2 * r[i]:.17g} 1.0 {x[i]:.17g} {a_scene['y'][i]:.17g} 0" for i in range(len(r))]
+    lines.append("\nVelocities\n")
+    v = a_scene["vx"], a_scene["vy"], a_scene["spin"]
+    lines += [f"{i + 1} {v[0][i]:.17g} {v[1][i]:.17g} 0 0 0 {v[2][i]:.17g}" for i in range(len(r))]
+    (Path(folder) / "scene.data").write_text("\n".join(lines) + "\n")
+
+
+def pair_style(a_scene):
+    """Return the pair style.
+
+    gran/hooke/history damps by m_eff gamma where the drum's law has sqrt(m_eff): gamma is taken at the mean mass.
+    """
+    mu, constants = float(a_scene["friction"]), [float(c) for c in a_scene["constants"]]
+    if str(a_scene["law"]) == "hertzHistory":
+        return "pair_style gran/hertz/history {} {} {} {} {} 1".format(*constants, mu)
+    k_n, k_t, restitution = constants
+    free = a_scene["kind"] == 0
+    half_mass = float(a_scene["density"]) * np.pi * np.mean(a_scene["r"][free] ** 2) / 2
+    gamma = -2 * np.log(restitution) * np.sqrt(k_n / half_mass / (np.pi**2 + np.log(restitution) ** 2))
+    return f"pair_style gran/hooke/history {k_n} {k_t} {gamma} {gamma} {mu} 1"
+
+
+def walls(a_scene):
+    """Return the fixes of what does not move freely, and the masses it counts with."""
+    vx, vy, spin = map(float, a_scene["drive"])
+    if a_scene["period"] == 0 and spin:
+        return (
+            f"fix turns wall move rotate 0 0 0 0 0 1 {2 * np.pi / spin:.17g}",
+            f"set group wall density/disc {DRUM_MASS}",
+        )
+    fixes = "fix rest wall freeze"
+    if np.any(a_scene["kind"] == DRIVEN):
+        fixes += f"\nfix led driven move linear {vx} {vy} 0"
+    return fixes, ""
+
+
+def run(a_scene, folder, steps, ranks):
+    """Run some steps from the scene's start; return {wall, cpu, energy}."""
+    fixes, masses = walls(a_scene)
+    text = INPUT.format(
+        boundary="p" if a_scene["period"] > 0 else "f",
+        ranks=ranks,
+        data="scene.data",
+        density=float(a_scene["density"]),
+        skin=0.1 * 2 * float(np.median(a_scene["r"])),
+        pair=pair_style(a_scene),
+        dt=float(a_scene["dt"]),
+        gravity=float(a_scene["gravity"]),
+        walls=fixes,
+        masses=masses,
+        steps=steps,
+    )
+    (Path(folder) / "scene.in").write_text(text)
+    command = ["lmp", "-in", "scene.in", "-log", "scene.log", "-screen", "none"]
+    if ranks > 1:
+        command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks), *command]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    log = (Path(folder) / "scene.log").read_text()
+    if done.returncode or "Loop time" not in log:
+        raise RuntimeError(
+            f"LAMMPS failed: {(done.stderr or log).strip().splitlines()[-1:]}; its input is {folder}/scene.in"
+        )
+    wall = float(re.search(r"Loop time of (\S+)", log)[1])
+    share = float(re.search(r"([\d.]+)% CPU use", log)[1]) / 100
+    _, slide, turn = [
+        line.split() for line in log[: log.index("Loop time")].splitlines() if re.match(r"\s*\d+\s", line)
+    ][-1]
+    return dict(wall=wall, cpu=wall * share, energy=float(slide) + 1.25 * float(turn))

@@ -1,0 +1,149 @@
+"""The scenes that are timed: disks, walls, what is driven, and the law, as one dict of arrays and numbers each.
+
+A scene has x, y, r, vx, vy, spin, kind of shape (n,) (kind: 0 free, 1 wall, 2 driven disk), velocities on the step, and
+law, constants, friction, gravity, dt, period (in x, 0 for none), drive (vx, vy, spin of the driven disk or of the drum).
+"""
+
+import numpy as np
+
+from .. import cache, engines
+
+FREE, WALL, DRIVEN = 0, 1, 2
+RECIPE = 1  # raise it when a scene comes out different
+
+WIGGLE = dict(law="hertzHistory", constants=(2e6, 2.46e6, 2500.0, 2500.0), density=1.0)
+MAGNUS = dict(law="hertzHistory", constants=(2e9, 2.45e9, 8e6, 8e6), density=20.0)
+DRUM = dict(law="springDashpot", constants=(2e5, 2e5 * 2 / 7, 0.92), density=4 / np.pi)
+
+
+def scene(name):
+    """Return the scene of that name, from the cache or by making it."""
+    maker = SCENES[name]
+    return cache.cached(f"bench-{name}", {"scene": name}, RECIPE, maker)
+
+
+def together(parts, **numbers):
+    """Join parts (dicts of x, y, r, kind) into a scene at rest."""
+    arrays = {key: np.concatenate([np.asarray(part[key], float) for part in parts]) for key in ("x", "y", "r")}
+    kind = np.concatenate([np.full(len(part["x"]), part["kind"]) for part in parts])
+    rest = np.zeros(len(kind))
+    return dict(arrays, kind=kind, vx=rest, vy=rest.copy(), spin=rest.copy(), **numbers)
+
+
+def lattice(width, rows, diameters, seed, bottom=1.2):
+    """Return free disks on a loose square lattice, jittered: what a bed is poured from."""
+    rng = np.random.default_rng(seed)
+    spacing = diameters[1] * 1.02
+    columns = int(width / spacing)
+    k = np.arange(columns * rows)
+    x = width * (k % columns + 0.5) / columns + rng.uniform(-0.01, 0.01, len(k))
+    return dict(x=x, y=bottom + spacing * (k // columns), r=rng.uniform(*diameters, len(k)) / 2, kind=FREE)
+
+
+def base(width):
+    """Return a row of wall disks of diameter 1 at y = 0."""
+    return dict(x=np.arange(width) + 0.5, y=np.zeros(width), r=np.full(width, 0.5), kind=WALL)
+
+
+def run(a_scene, until, dt=None):
+    """Move a scene on with GrainLoop, until `until(loop, steps)` is true every 1000 steps; return it at rest or in motion."""
+    from . import ours
+
+    return ours.move_on(a_scene, until, dt)
+
+
+def at_rest(loop, steps, per_grain=1e-5, at_least=60_000):
+    """True when grains of unit mass keep less than `per_grain`, and the highest have had the time to fall."""
+    return steps >= at_least and loop.kineticEnergy < per_grain * len(loop.ids)
+
+
+def bed(width, rows):
+    """Return a settled bed of the wiggle study's disks, periodic in x."""
+    poured = together(
+        [lattice(width, rows, (0.9, 1.1), seed=rows), base(width)],
+        **WIGGLE,
+        friction=0.1,
+        gravity=1.0,
+        dt=1e-4,
+        period=float(width),
+        drive=(0.0, 0.0, 0.0),
+    )
+    settled = run(poured, at_rest, dt=3e-4)
+    return dict(settled, **{key: np.zeros(len(settled["x"])) for key in ("vx", "vy", "spin")})
+
+
+def bed10k():
+    """Return 9,800 settled disks."""
+    return bed(100, 110)
+
+
+def wiggle63k():
+    """Return 63,000 settled disks: three beds side by side, each periodic, so that the seams fit."""
+    one = bed(100, 237)
+    copies = {key: np.tile(one[key], 3) for key in ("r", "vx", "vy", "spin", "kind", "y")}
+    return dict(one, **copies, x=np.concatenate([one["x"] + shift for shift in (0, 100, 200)]), period=300.0)
+
+
+def magnus(fraction, place):
+    """Return a flowing scene of the Magnus study in SI units: box 300 d x 200 d, an intruder of 5 d after 10 d of travel."""
+    d, width, height = 0.02, 300.0, 200.0
+    wall_y = height / 2 - 0.5
+    walls = [dict(base(300), y=np.full(300, side * wall_y)) for side in (-1, 1)]
+    intruder = dict(x=[20.0], y=[0.0], r=[2.5], kind=DRIVEN)
+    grains = place(fraction, width, wall_y)
+    near = np.hypot(grains["x"] - 20, grains["y"]) < 2.5 + grains["r"]
+    grains = {key: value[~near] if np.ndim(value) else value for key, value in grains.items()}
+    start = together([grains, *walls, intruder])
+    for key in ("x", "y", "r"):
+        start[key] = start[key] * d
+    speed, spin = 5.0, 5.0 / 0.05  # V0 [m/s] and a spin ratio of 1
+    start["vx"][-1], start["spin"][-1] = speed, spin
+    start.update(MAGNUS, friction=0.5, gravity=0.0, dt=2e-6, period=width * d, drive=(speed, 0.0, spin))
+    return run(start, lambda loop, steps: steps * 2e-6 * speed > 10 * d)
+
+
+def scattered(fraction, width, wall_y):
+    """Return disks put down at random, for dilute scenes."""
+    count = int(fraction * width * 2 * wall_y / (np.pi / 4 * 1.0033))
+    radii = engines.uniform_radii(count, 0.9, 1.1, 1)
+    centres = engines.random_insertion((0, width, -wall_y + 0.5, wall_y - 0.5), True, radii, np.zeros((0, 3)), 1)
+    return dict(x=centres[:, 0], y=centres[:, 1], r=radii, kind=FREE)
+
+
+def hexagonal(fraction, width, wall_y):
+    """Return disks on a jittered hexagonal lattice of that area fraction: dense scenes without a long compression."""
+    spacing = np.sqrt(np.pi / 4 * 1.0033 / (fraction * np.sqrt(3) / 2))
+    columns, rows = int(width / spacing), int((2 * wall_y - 1.0) / (spacing * np.sqrt(3) / 2))
+    row, column = np.divmod(np.arange(columns * rows), columns)
+    rng = np.random.default_rng(2)
+    return dict(
+        x=(column + 0.5 + 0.5 * (row % 2)) * width / columns % width,
+        y=-wall_y + 1.0 + row * (2 * wall_y - 2.0) / (rows - 1),
+        r=rng.uniform(0.45, 0.55, len(row)) * 0.99,
+        kind=FREE,
+    )
+
+
+def magnus_dilute():
+    """Return 26,000 disks at an area fraction of 0.352."""
+    return magnus(0.352, scattered)
+
+
+def magnus_dense():
+    """Return 60,000 disks at an area fraction of about 0.8, from a hexagonal lattice."""
+    return magnus(0.80, hexagonal)
+
+
+def drum150():
+    """Return a turning drum of diameter 150, half full of 7,700 disks of 1 to 1.2."""
+    angle = 2 * np.pi * np.arange(475) / 475
+    wall = dict(x=75.5 * np.cos(angle), y=75.5 * np.sin(angle), r=np.full(475, 0.5), kind=WALL)
+    rng = np.random.default_rng(3)
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(-74, 74, 1.22), np.arange(-74, 40, 1.22)))
+    inside = np.flatnonzero(np.hypot(x, y) < 74)[:7700]
+    grains = dict(x=x[inside], y=y[inside], r=rng.uniform(0.5, 0.6, len(inside)), kind=FREE)
+    start = together([grains, wall], **DRUM, friction=0.5, gravity=1.0, dt=1e-4, period=0.0, drive=(0.0, 0.0, 6.3e-3))
+    return run(start, lambda loop, steps: steps >= 300_000)
+
+
+SCENES = {f.__name__: f for f in (bed10k, magnus_dilute, magnus_dense, wiggle63k, drum150)}
