@@ -35,13 +35,19 @@ from graindrive.postproc.statistics import drift  # noqa: E402
 
 TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
 SAMPLES_PER_PERIOD = 40
+SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
+CHECKPOINT_SECONDS = 60
 
 
 class WiggleParameters(StudyParameters):
     """What the wiggle study knows, in units of d, rho, g."""
 
-    shape: str = quantity("triangle", "-", "disk, square, tall, wide, triangle (OS1 to OS5), or a file of vertices: .wkt, .csv")
-    amplitude: float = quantity(3.0, "d", "A of the displacement; of the velocity [sqrt(d g)] with drive=velocity", ge=0)
+    shape: str = quantity(
+        "triangle", "-", "disk, square, tall, wide, triangle (OS1 to OS5), or a file of vertices: .wkt, .csv"
+    )
+    amplitude: float = quantity(
+        3.0, "d", "A of the displacement; of the velocity [sqrt(d g)] with drive=velocity", ge=0
+    )
     period: float = quantity(4.0, "sqrt(d/g)", "T of the oscillation", gt=0)
     drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "which of the two is A sin(2 pi t/T)")
     mu: float = quantity(0.1, "-", "friction coefficient", ge=0)
@@ -51,13 +57,14 @@ class WiggleParameters(StudyParameters):
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
     frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1)
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
+    largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
 
 
 PRESETS = {
-    "smoke": dict(width=26, height=18, depth=8, time=2, amplitude=1.5, period=1, frames=2, dt_factor=5, rest=0.05),
-    "demo": dict(width=36, height=32, depth=16, time=20, period=4, dt_factor=5, rest=2e-3),
+    "smoke": dict(width=26, height=18, depth=8, time=4, amplitude=1.5, period=2, frames=2, dt_factor=5, rest=0.05),
+    "demo": dict(width=120, height=90, depth=50, time=60, period=4, dt_factor=5, rest=1e-3),
     "paper": {},
 }
 
@@ -87,9 +94,13 @@ def check_room(p, outline):
     swing = p.amplitude if p.drive == "displacement" else p.amplitude * p.period / (2 * np.pi)
     needed = right - left + 2 * swing + 4
     if needed > p.width:
-        raise UsageError(f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d; raise width or lower amplitude")
+        raise UsageError(
+            f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d; raise width or lower amplitude"
+        )
     if p.height - p.depth + bottom < 1:
-        raise UsageError(f"height={p.height:g} d and depth={p.depth:g} d put the body into the base; raise height or lower depth")
+        raise UsageError(
+            f"height={p.height:g} d and depth={p.depth:g} d put the body into the base; raise height or lower depth"
+        )
     if p.depth < top:
         raise UsageError(f"depth={p.depth:g} d lets the body stick out of the bed by {top - p.depth:g} d; raise depth")
     return centred
@@ -101,8 +112,8 @@ def make_bed(p, outline_vertices, clump, at, dt, grains):
         packing.BedRecipe(
             width=p.width,
             height=p.height,
-            d_min=0.9,
-            d_max=1.1,
+            d_min=SMALLEST_DIAMETER,
+            d_max=LARGEST_DIAMETER,
             material=grains,
             beads=tuple(map(tuple, clump.beads + at)),
             bead_radius=clump.bead_radius,
@@ -125,48 +136,71 @@ def polygon_area(vertices):
 
 
 def run(p, folder):
-    """Make the bed, shake the body, record its way."""
+    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
     grains, dt = material(p), TIME_STEP * p.dt_factor
     outline, clump = intruder(p)
     vertices = check_room(p, outline)
-    at = np.array([p.width / 2, p.height - p.depth])
-    if dt > grains.critical_time_step(0.45):
-        scene.set_time_step(dt, grains, 0.45)
-    bed = make_bed(p, vertices, clump, at, dt, grains)
+    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap)
+    if folder.resumed:
+        stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
+        scene.load(folder.resumed["folder"])
+    else:
+        stage = build(p, grains, dt, clump, vertices)
+    folder.note(dt=dt, dt_over_critical=ratio, n_grains=stage["grains"])
+    folder.write(
+        "intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d"), bead_radius=(clump.bead_radius, "d"))
+    )
+    print(f"{stage['grains']} grains, dt = {dt:.3g} sqrt(d/g), dt/dt_crit = {ratio:.3g}", file=sys.stderr)
+    record(p, folder, stage)
 
+
+def build(p, grains, dt, clump, vertices):
+    """Put bed, body, drive and measure into YADE; return the counts of base and grains and the body's id."""
+    from yade import O
+
+    at = np.array([p.width / 2, p.height - p.depth])
+    bed = make_bed(p, vertices, clump, at, dt, grains)
     scene.start(p.width, float(bed["y"].max()) + 2 * p.amplitude + 10)
     base = scene.add_base(p.width, 1.0, grains.density)
     ids = scene.add_disks(bed["x"], bed["y"], bed["r"], grains.density)
     body = scene.add_intruder(clump, *at, blocked="xzXYZ")
     drive = engines.OscillationDrive(body=body, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
     binner = engines.ContactForceBinner(body=body, label="binner")
-    scene.yade_loop(grains, gravity=1.0, between=[binner, drive])
-    ratio = scene.set_time_step(dt, grains, 0.45)
+    O.dt = dt
+    scene.run_on(
+        p.loop, grains, gravity=1.0, between=[binner, drive], precision=p.precision, largest_overlap=p.largest_overlap
+    )
+    return dict(base=len(base), grains=len(ids), body=body)
 
-    record(p, folder, ids, base, body, clump, vertices, drive, binner, ratio)
 
-
-def record(p, folder, ids, base, body, clump, vertices, drive, binner, ratio):
-    """Run in blocks, a fortieth of a period each, and keep series and frames."""
+def record(p, folder, stage):
+    """Run in blocks, a fortieth of a period each, and keep series, frames and checkpoints."""
     from yade import O
 
-    print(f"{len(ids)} grains, dt = {O.dt:.3g} sqrt(d/g), dt/dt_crit = {ratio:.3g}", file=sys.stderr)
-    folder.note(dt=O.dt, dt_over_critical=ratio, n_grains=len(ids))
     folder.declare_series(
-        t="sqrt(d/g)", x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g", contacts="-", work="rho g d^3"
+        t="sqrt(d/g)",
+        x="d",
+        y="d",
+        vx="sqrt(d g)",
+        vy="sqrt(d g)",
+        fx="rho d^2 g",
+        fy="rho d^2 g",
+        contacts="-",
+        work="rho g d^3",
     )
-    folder.write("intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d"), bead_radius=(clump.bead_radius, "d")))
-    state, steps = O.bodies[body].state, max(1, round(p.time / O.dt))
-    block = max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
-    frame_steps = iter(np.linspace(0, steps, p.frames).round())
-    due, track = next(frame_steps), []
+    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
+    state, drive, binner = O.bodies[stage["body"]].state, O.labeledEngine("drive"), O.labeledEngine("binner")
+    steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
+    first = folder.resumed["step"] if folder.resumed else 0
+    track = list(np.load(folder.resumed["folder"] / "track.npy")) if folder.resumed else []
+    frames_due = list(np.linspace(0, steps, p.frames).round()[folder.frames :])
+    checkpoints = progress.Every(CHECKPOINT_SECONDS)
 
     def sample(done):
-        nonlocal due
-        position, velocity = state.pos, state.vel
-        track.append((done * O.dt, position[1]))
+        t, position, velocity = done * O.dt, state.pos, state.vel
+        track.append((t, position[1]))
         folder.append(
-            t=done * O.dt,
+            t=t,
             x=position[0],
             y=position[1],
             vx=velocity[0],
@@ -176,12 +210,22 @@ def record(p, folder, ids, base, body, clump, vertices, drive, binner, ratio):
             contacts=binner.lastContactNumber,
             work=drive.work,
         )
-        if due is not None and done >= due:
-            folder.frame(done * O.dt, *scene.picture(ids, base, body))
-            due = next(frame_steps, None)
+        if frames_due and done >= frames_due[0]:
+            frames_due.pop(0)
+            folder.frame(t, *scene.picture(ids, base, stage["body"]))
 
-    sample(0)
-    timing = progress.run_blocks(steps, block, sample, grains=len(ids), label="shaking")
+    def save(place):
+        scene.save(place)
+        np.save(place / "track.npy", track)
+
+    def after_block(done):
+        sample(first + done)
+        if checkpoints.due():
+            folder.checkpoint(save, first + done, **stage)
+
+    if not folder.resumed:
+        sample(0)
+    timing = progress.run_blocks(steps - first, block, after_block, grains=len(ids), label="shaking")
     folder.note(steps=timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
     t, y = np.array(track).T
     rise = drift(t, y, p.period)

@@ -18,7 +18,7 @@ const char* const GrainLoop::documentation = "Collider, contact law and integrat
 											 "is seen after read(). Orientations of free disks\n"
 											 "are not kept. Raises ValueError for shapes other than disks, a time step above the "
 											 "critical one and numbers out of range; a guard\n"
-											 "stops the run where grains overlap by more than a tenth of a radius.";
+											 "stops the run where grains overlap by more than `largestOverlap` of a radius.";
 
 void GrainLoop::check() const
 {
@@ -34,6 +34,7 @@ void GrainLoop::check() const
 	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
 	require(periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0, "GrainLoop.periods must not be negative, and 0 in z",
 		periods.transpose());
+	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius", largestOverlap);
 	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
 	contact_law();
@@ -87,6 +88,7 @@ loop::Stepper& GrainLoop::stepper()
 	if (map_.known_bodies != scene->bodies->size())
 		throw std::runtime_error(
 			"GrainLoop: bodies were added to or removed from O.bodies; call sync() before and read() after such a change");
+	stepper_->guarding().largest_overlap = largestOverlap;
 	if (stepper_->settings().dt != scene->dt) stepper_->set_time_step(scene->dt);
 	return *stepper_;
 }

@@ -32,6 +32,7 @@ public:
 		visit("precision", &Self::precision, "'double' or 'single': of the contacts; positions and velocities are always double");
 		visit("threads", &Self::threads, "number of threads; results have the same bits for any");
 		visit("skin", &Self::skin, "how far neighbours are listed [m]; 0 lets the loop choose");
+		visit("largestOverlap", &Self::largestOverlap, "overlap that stops the run [smaller radius]");
 		visit("watched", &Self::watched,
 			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
 		visit(
@@ -58,7 +59,7 @@ public:
 
 	std::string law = "hertzHistory", precision = "double";
 	Real normalStiffness = 2e6, tangentialStiffness = 2.46e6, normalDamping = 2500, tangentialDamping = 2500;
-	Real young = 5e6, poisson = 0.45, restitution = 0.6, friction = 0.1, skin = 0;
+	Real young = 5e6, poisson = 0.45, restitution = 0.6, friction = 0.1, skin = 0, largestOverlap = 0.1;
 	Vector3r gravity = Vector3r::Zero(), periods = Vector3r::Zero();
 	int threads = 1;
 	long syncEvery = 0;

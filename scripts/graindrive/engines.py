@@ -9,7 +9,9 @@ def find_yade():
     """Put Debian's YADE on the path for a plain `/usr/bin/python3` (the `yade` program has done so already)."""
     if "yade" in sys.modules:
         return
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # as the `yade` program: idle OpenMP threads spin and slow a busy machine
+    os.environ.setdefault(
+        "OMP_NUM_THREADS", "1"
+    )  # as the `yade` program: idle OpenMP threads spin and slow a busy machine
     for folder in glob.glob("/usr/lib/*/yade-double/py"):
         if folder not in sys.path:
             sys.path.append(folder)

@@ -19,13 +19,14 @@ class HertzHistoryMaterial:
     friction: float
     density: float
 
-    def critical_time_step(self, smallest_radius, overlap=0.1):
+    def critical_time_step(self, smallest_radius, overlap):
         """Return the largest stable step [s] of two smallest disks overlapping by `overlap` of their radius.
 
         Leapfrog is stable for omega dt < 2 (sqrt(1 + zeta^2) - zeta). Normal: omega^2 = 3/2 K_n sqrt(R_eff delta)/m_eff.
         Tangential: omega^2 = K_t sqrt(R_eff delta)/(m_eff/3), since two disks (I = m R^2/2) slide past each other with a
         third of m_eff: half of their rolling is free. zeta = gamma m' sqrt(R_eff delta)/(2 m' omega) with the same mass.
-        The default overlap is where GrainLoop's guard stops a run, so the step holds for every contact it lets pass.
+        Hertz stiffness grows with the overlap: given the one where GrainLoop's guard stops a run, the step holds for
+        every contact that it lets pass.
         """
         mass = self.density * math.pi * smallest_radius**2
         hertz = math.sqrt(smallest_radius / 2 * overlap * smallest_radius)

@@ -33,7 +33,7 @@ class StudyParameters(BaseModel):
         "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
     )
     seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
-    loop: Literal["yade", "grain"] = quantity("yade", "-", "time loop: YADE's own or GrainLoop")
+    loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own as the reference")
     precision: Literal["double", "single"] = quantity("double", "-", "number type of contact forces in GrainLoop")
     dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0)
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)

@@ -42,6 +42,21 @@ def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run"):
     return Timing(done, seconds, grains)
 
 
+class Every:
+    """Says `due` once in so many seconds of wall time, the first time after that many."""
+
+    def __init__(self, seconds):
+        self.seconds, self.last = seconds, time.monotonic()
+
+    def due(self):
+        """True if `seconds` have passed since it last was."""
+        now = time.monotonic()
+        if now - self.last < self.seconds:
+            return False
+        self.last = now
+        return True
+
+
 def advance(steps):
     """Run YADE's loop for `steps` steps and return the seconds that it took.
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from . import engines
+from . import engines, grain_loop
 from .errors import UsageError
 
 IN_PLANE = "zXY"  # degrees of freedom that a two-dimensional scene blocks
@@ -86,25 +86,66 @@ def yade_loop(material, gravity, between=(), damping=0.0):
     ]
 
 
-def set_time_step(dt, material, smallest_radius):
-    """Set O.dt and return dt/dt_crit; UsageError if it is over 1."""
+def run_on(loop, material, gravity, between=(), precision="double", largest_overlap=0.1):
+    """Put the loop of that name into O.engines: "yade" (the reference) or "grain" (fast, the same physics).
+
+    GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius.
+    """
     from yade import O
 
-    critical = material.critical_time_step(smallest_radius)
+    yade_loop(material, gravity, between)
+    if loop == "grain":
+        grain_loop.use_grain_loop(
+            precision=precision, threads=O.numThreads, largestOverlap=largest_overlap, label="loop"
+        )
+
+
+def fast_loop():
+    """Return the GrainLoop that runs this scene, None under YADE's own loop."""
+    from yade import O
+
+    return next((engine for engine in O.engines if isinstance(engine, engines.GrainLoop)), None)
+
+
+def check_time_step(dt, material, smallest_radius, overlap):
+    """Return dt/dt_crit of two smallest grains overlapping by `overlap` radii; UsageError if it is over 1."""
+    critical = material.critical_time_step(smallest_radius, overlap)
     if dt > critical:
         raise UsageError(
             f"time step {dt:.3g} is over the critical {critical:.3g} of two touching smallest grains;"
-            " lower dt_factor to less than "
-            f"{critical / dt:.2g} times its value"
+            f" lower dt_factor, to {math.floor(90 * critical / dt) / 100:g} times its value or less"
         )
-    O.dt = dt
     return dt / critical
+
+
+def save(folder):
+    """Write the whole scene, engines and springs included, into `folder` for `load`."""
+    from yade import O
+
+    loop = fast_loop()
+    if loop:
+        loop.sync()
+        loop.checkpoint(str(folder / "loop.bin"))
+    O.save(str(folder / "scene.yade.gz"))
+
+
+def load(folder):
+    """Go on from a scene that `save` wrote, to the last bit."""
+    from yade import O
+
+    O.load(str(folder / "scene.yade.gz"))
+    loop = fast_loop()
+    if loop:
+        loop.restore(str(folder / "loop.bin"))
 
 
 def rows_of(ids):
     """Return x, y, radius, vx, vy, spin of the bodies `ids`, a dict of arrays of shape (n,)."""
     from yade import O
 
+    loop = fast_loop()
+    if loop:
+        loop.sync()
     table = engines.body_table(O._sceneObj)
     rows = np.searchsorted(table["id"], ids)
     position, velocity = table["position"][rows], table["velocity"][rows]
@@ -132,7 +173,8 @@ def picture(grains, base, intruder):
     place[shown] = np.arange(len(shown))
     table = engines.body_table(O._sceneObj)
     place[table["id"][table["clump"] == intruder]] = -1
-    contacts = engines.contact_table(O._sceneObj)
+    loop = fast_loop()
+    contacts = loop.contacts() if loop else engines.contact_table(O._sceneObj)
     i, j = place[contacts["i"]], place[contacts["j"]]
     kept = (i > -2) & (j > -2)
     columns = dict(

@@ -1,5 +1,6 @@
 """The wiggle study, shrunk: as a command in batch mode, and its bed."""
 
+import importlib
 import json
 import os
 import subprocess
@@ -9,8 +10,10 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import engines, packing
+from graindrive import engines, packing, progress
+from graindrive.errors import Interrupted
 from graindrive.material import HertzHistoryMaterial
+from graindrive.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 TINY = ["scale=smoke", "width=22", "height=14", "depth=6", "amplitude=1", "time=0.5", "period=0.5", "frames=1"]
@@ -37,12 +40,23 @@ def files_below(folder):
 def test_a_run_leaves_one_complete_folder_and_nothing_else(home, tmp_path):
     done = yade(home, "wiggle_triangle.py", *TINY, "out=result", folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert files_below(tmp_path) == ["result/" + name for name in ("figure.pdf", "figure.png", "run.h5", "summary.json")]
+    assert files_below(tmp_path) == [
+        "result/" + name for name in ("figure.pdf", "figure.png", "run.h5", "summary.json")
+    ]
     # YADE's program makes IPython's profile before it runs any script; all else is our cache.
     assert [name for name in files_below(home) if not name.startswith(("cache/", ".ipython/"))] == []
     summary = json.loads((tmp_path / "result/summary.json").read_text())
     assert summary["shape"] == "triangle" and summary["steps"] == 1000 and 0 < summary["dt_over_critical"] < 1
-    assert set(summary) >= {"rise_rate", "rise_rate_err", "y_final", "amplitude", "period", "particle_steps_per_second", "n_grains", "wall_s"}
+    assert set(summary) >= {
+        "rise_rate",
+        "rise_rate_err",
+        "y_final",
+        "amplitude",
+        "period",
+        "particle_steps_per_second",
+        "n_grains",
+        "wall_s",
+    }
 
 
 def test_imposed_x_is_exact_and_y_is_free(home, tmp_path):
@@ -63,6 +77,69 @@ def test_the_same_seed_gives_the_same_run_and_another_seed_another(home, tmp_pat
             track[name] = file["series/y"][:]
     assert np.array_equal(track["a"], track["b"])
     assert not np.array_equal(track["a"], track["c"])
+
+
+@pytest.fixture
+def wiggle(monkeypatch, home):
+    """The study as a module, in this process."""
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(home / "cache"))
+    monkeypatch.syspath_prepend(str(STUDIES))
+    return importlib.import_module("wiggle")
+
+
+def tiny(wiggle, **changes):
+    keys = {key: value for key, value in (pair.split("=") for pair in TINY)}
+    return wiggle.WiggleParameters(**{**wiggle.PRESETS["smoke"], **keys, **changes})
+
+
+def series_of(folder):
+    with h5py.File(folder / "run.h5") as file:
+        return {name: data[:] for name, data in file["series"].items()}
+
+
+@pytest.mark.parametrize("loop", ["grain", "yade"])
+def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monkeypatch, loop):
+    whole = tiny(wiggle, loop=loop, out=str(tmp_path / "whole"))
+    with RunFolder(whole, study="wiggle") as folder:
+        wiggle.run(whole, folder)
+
+    monkeypatch.setattr(wiggle, "CHECKPOINT_SECONDS", 0)  # one after every block
+    advance, blocks = progress.advance, iter(range(7))
+
+    def stop_in_the_seventh_block(steps):
+        if next(blocks) == 6:
+            raise Interrupted(15)
+        return advance(steps)
+
+    monkeypatch.setattr(progress, "advance", stop_in_the_seventh_block)
+    parts = tiny(wiggle, loop=loop, out=str(tmp_path / "parts"))
+    with pytest.raises(Interrupted), RunFolder(parts, study="wiggle") as folder:
+        wiggle.run(parts, folder)
+    monkeypatch.setattr(progress, "advance", advance)
+    resumed = parts.copy(update={"resume": True})
+    with RunFolder(resumed, study="wiggle") as folder:
+        assert folder.resumed["step"] > 0
+        wiggle.run(resumed, folder)
+
+    expected, found = series_of(tmp_path / "whole"), series_of(tmp_path / "parts")
+    if loop == "grain":
+        assert all(np.array_equal(expected[name], found[name]) for name in expected)
+    else:  # O.load puts the interactions into another order: forces are summed in it, and round-off grows as between loops
+        assert np.array_equal(expected["t"], found["t"])
+        assert np.abs(expected["y"] - found["y"]).max() < 1e-6
+
+
+def test_both_loops_go_the_same_way_until_chaos(wiggle, tmp_path):
+    track = {}
+    for loop in ("grain", "yade"):
+        p = tiny(wiggle, loop=loop, out=str(tmp_path / loop))
+        with RunFolder(p, study="wiggle") as folder:
+            wiggle.run(p, folder)
+        track[loop] = series_of(tmp_path / loop)
+    t, apart = track["grain"]["t"], np.abs(track["grain"]["y"] - track["yade"]["y"])
+    # Round-off of 1e-15 grows tenfold in about 0.1 sqrt(d/g) once the grains collide.
+    assert apart[t <= 0.1].max() < 1e-12
+    assert apart.max() < 1e-6
 
 
 def test_an_outline_from_a_file_is_an_intruder(home, tmp_path):
@@ -90,7 +167,13 @@ def test_an_outline_from_a_file_is_an_intruder(home, tmp_path):
 )
 def test_bad_input_is_one_line_exit_2_and_nothing_written(home, tmp_path, given, said):
     before = files_below(home)
-    done = yade(home, "wiggle_triangle.py", *[key for key in TINY if key.split("=")[0] != given.split("=")[0]], given, folder=tmp_path)
+    done = yade(
+        home,
+        "wiggle_triangle.py",
+        *[key for key in TINY if key.split("=")[0] != given.split("=")[0]],
+        given,
+        folder=tmp_path,
+    )
     yades = ("Running script", "Warning: no X", "TCP python prompt")  # said before any script runs
     own_lines = [line for line in done.stderr.splitlines() if not line.startswith(yades)]
     assert done.returncode == 2
@@ -146,5 +229,3 @@ def test_the_cache_gives_the_same_bed_back_and_knows_every_parameter(monkeypatch
 def test_a_bed_without_room_is_refused():
     with pytest.raises(Exception, match="no room for grains"):
         packing.insert(bed_recipe(height=0.5))
-
-
