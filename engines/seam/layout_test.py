@@ -42,8 +42,8 @@ def test_every_kind_of_fact_is_proven(kind):
     assert FACTS[kind] in MEMBERS
 
 
-# Back by 16: a size 8 bytes too small is hidden by the allocator, which gives 104 bytes to whoever asks for 96.
-@pytest.mark.parametrize("member, shift", [(m, s) for m in MEMBERS for s in (-16, 8)])
+# Back by 32: a size that is less too small may be hidden by what the allocator adds to a block.
+@pytest.mark.parametrize("member, shift", [(m, s) for m in MEMBERS for s in (-32, 8)])
 def test_a_damaged_offset_is_refused(member, shift):
     with pytest.raises(ImportError) as refusal:
         engines.prove_layout({member: shift})
