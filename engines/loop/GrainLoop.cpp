@@ -34,7 +34,8 @@ void GrainLoop::check() const
 	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
 	require(periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0, "GrainLoop.periods must not be negative, and 0 in z",
 		periods.transpose());
-	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius", largestOverlap);
+	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius",
+		largestOverlap);
 	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
 	contact_law();

@@ -123,7 +123,7 @@ void bind_loop()
 	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,)");
 	cls.def("beginOnStep", begin_on_step,
 		"For velocities of O.bodies that belong to the step itself, not half a step behind (LAMMPS): takes one step with half a "
-	    "kick.");
+		"kick.");
 	cls.def("kineticEnergyOnStep", kinetic_energy_on_step, "Kinetic energy with the velocities of the whole step [J].");
 	cls.add_property("kineticEnergy", kinetic_energy, "of the free disks, translation and rotation [J]");
 	cls.add_property("searches", searches, "searches for neighbours so far");

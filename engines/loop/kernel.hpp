@@ -20,6 +20,14 @@ struct Fold {
 	bool partnered;                    ///< the pairs' forces act on the partner
 };
 
+constexpr int grains_per_block = 32;
+
+/// The grains of a block, those with pairs first: the others only drift.
+struct BlockOrder {
+	std::uint8_t with_pairs;               ///< how many
+	std::uint8_t order[grains_per_block];  ///< places within the block
+};
+
 /// Everything the inner functions touch. Offsets, counts and order are decided by the pair list; the kernels only compute.
 struct KernelData {
 	GrainRow* rows;
@@ -28,6 +36,7 @@ struct KernelData {
 	void* slips;                                     ///< tangential springs [m], double or float; not read without friction
 	void* forces;                                    ///< PairForce<double> or <float>; forces[0] stays zero
 	const ForceSlots* slots;                         ///< of free grains
+	const BlockOrder* block_order;
 	const Fold* folds;
 	const std::uint32_t* fold_sources;
 	const std::uint32_t* block_pair_end;  ///< by block of free grains: all pairs owned up to the block end before this
@@ -41,8 +50,6 @@ struct KernelData {
 	double spin_response;                       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
 	const ContactLaw* law;
 };
-
-constexpr int grains_per_block = 32;
 
 struct FastestSpeed {
 	double x = 0, y = 0;  ///< largest |v_x| and |v_y| [m/s]

@@ -85,7 +85,8 @@ struct Body {
 				pack<false>(difference, data, law, at);
 			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
 				fold(data, block);
-			move_block(data, block * grains_per_block, std::min((block + 1) * grains_per_block, n_free), fastest);
+			const std::uint32_t first = block * grains_per_block;
+			move_block(data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, n_free - first), fastest);
 		}
 		return { std::sqrt(fastest[0]), std::sqrt(fastest[1]) };
 	}
@@ -114,35 +115,49 @@ private:
 		return *reinterpret_cast<const Four*>(forces + bytes);
 	}
 
-	static inline void move_block(const KernelData& data, std::uint32_t begin, std::uint32_t end, Two& fastest)
+	static inline void move_block(
+		const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count, Two& fastest)
 	{
 		const auto* forces = static_cast<const char*>(data.forces);
-		const ForceSlots* slots = data.slots;
-		GrainRow* rows = data.rows;
+		const ForceSlots* slots = data.slots + first;
+		GrainRow* rows = data.rows + first;
 		const Two gravity_kick = { data.gravity_x * data.kick, data.gravity_y * data.kick };
 		const Two no_speed = {}, drift = data.drift - no_speed;
 		const Four partner_sign = { -1, -1, 1, 1 };
 		const double kick = data.kick, spin_response = data.spin_response;
+		const std::uint32_t with_pairs = block.with_pairs;
 		Two highest = fastest;
-		for (std::uint32_t g = begin; g < end; ++g) {
+		const auto kick_and_drift = [&](std::uint32_t g) __attribute__((always_inline))
+		{
 			const std::uint32_t* at = slots[g].at;
 			const Four owned = (force_at(forces, at[0]) + force_at(forces, at[1])) + force_at(forces, at[2]);
 			const Four partnered = (force_at(forces, at[3]) + force_at(forces, at[4])) + force_at(forces, at[5]);
 			const Four total = partnered * partner_sign + owned;
 			GrainRow& row = rows[g];
 			const double response = row.inverse_mass * kick;
-			Two position, velocity;
-			std::memcpy(&position, &row.x, sizeof position);
-			std::memcpy(&velocity, &row.vx, sizeof velocity);
 			const Two force = { double(total[0]), double(total[1]) };
-			velocity = velocity + (force * response + gravity_kick);
-			position = position + velocity * drift;
-			std::memcpy(&row.x, &position, sizeof position);
-			std::memcpy(&row.vx, &velocity, sizeof velocity);
 			row.surface_speed += double(total[2]) * (response * spin_response);
-			highest = (Two)_mm_max_pd((__m128d)highest, (__m128d)(velocity * velocity));
+			drift_row(row, force * response + gravity_kick, drift, highest);
+		};
+		if (with_pairs == count) {
+			for (std::uint32_t g = 0; g < count; ++g) kick_and_drift(g);
+		} else {
+			for (std::uint32_t k = 0; k < with_pairs; ++k) kick_and_drift(block.order[k]);
+			for (std::uint32_t k = with_pairs; k < count; ++k) drift_row(rows[block.order[k]], gravity_kick, drift, highest);
 		}
 		fastest = highest;
+	}
+
+	static inline void drift_row(GrainRow& row, Two kick, Two drift, Two& highest)
+	{
+		Two position, velocity;
+		std::memcpy(&position, &row.x, sizeof position);
+		std::memcpy(&velocity, &row.vx, sizeof velocity);
+		velocity = velocity + kick;
+		position = position + velocity * drift;
+		std::memcpy(&row.x, &position, sizeof position);
+		std::memcpy(&row.vx, &velocity, sizeof velocity);
+		highest = (Two)_mm_max_pd((__m128d)highest, (__m128d)(velocity * velocity));
 	}
 };
 

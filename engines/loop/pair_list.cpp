@@ -45,14 +45,11 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 	const std::uint32_t room = padded(candidates.size()) + (threads + 3) * pack_alignment;
 	const PairLink dummy{ dummy_row * row_bytes, (dummy_row + 1) * row_bytes };
 	place.assign(candidates.size(), 0);
-	links.assign(room, dummy);
-	slips.assign(room, 0.0);
-	effective_radii.assign(room, 0.0);
-	effective_masses.assign(room, 0.0);
-	block_pair_end.assign(blocks, 0);
+	links.resize(room);
+	for (auto* list : { &slips, &effective_radii, &effective_masses }) list->resize(room);
+	block_pair_end.resize(blocks);
 	sweeps.assign(threads, {});
-
-	std::vector<std::uint32_t> early;
+	early.clear();
 	std::uint32_t next = first_place, c = 0;
 	const auto place_at_next = [&](std::uint32_t candidate) {
 		const Candidate& pair = candidates[candidate];
@@ -83,25 +80,53 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 			}
 			block_pair_end[b] = next;
 		}
-		sweep.pair_end = next = padded(next);
+		sweep.pair_end = next = pad(next, dummy);
 	}
 	for (; c < candidates.size(); ++c)
 		if (candidates[c].near) early.push_back(c);
 	early_begin = next;
 	for (const std::uint32_t candidate : early) place_at_next(candidate);
-	early_end = padded(next);
+	early_end = pad(next, dummy);
+}
+
+/// Fills up to a whole pack with pairs that never touch.
+std::uint32_t PairList::pad(std::uint32_t places, PairLink dummy)
+{
+	const std::uint32_t end = padded(places);
+	for (; places < end; ++places) {
+		links[places] = dummy;
+		for (auto* list : { &slips, &effective_radii, &effective_masses }) put(*list, places, 0);
+	}
+	return end;
+}
+
+void PairList::order_blocks(std::uint32_t n_free)
+{
+	block_order.resize(block_pair_end.size());
+	for (std::uint32_t b = 0; b < block_order.size(); ++b) {
+		const std::uint32_t first = b * grains_per_block, count = std::min<std::uint32_t>(grains_per_block, n_free - first);
+		std::uint8_t with = 0, without = 0, alone[grains_per_block];
+		for (std::uint32_t k = 0; k < count; ++k) {
+			const bool has_pairs = owned[first + k] || partnered[first + k];
+			block_order[b].order[with] = alone[without] = std::uint8_t(k);  // one of the two is kept
+			with += has_pairs, without += !has_pairs;
+		}
+		block_order[b].with_pairs = with;
+		std::copy(alone, alone + without, block_order[b].order + with);
+	}
 }
 
 void PairList::fill_slots(std::uint32_t n_free)
 {
-	static thread_local std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;
 	owned.assign(n_free, 0);
 	partnered.assign(n_free, 0);
 	for (std::uint32_t c = 0; c < candidates.size(); ++c) {
 		if (!place[c]) continue;
-		if (candidates[c].first < n_free) owned[candidates[c].first] += owned[candidates[c].first] < 255;
-		if (candidates[c].second < n_free) partnered[candidates[c].second] += partnered[candidates[c].second] < 255;
+		const std::uint32_t a = candidates[c].first, b = candidates[c].second;
+		if (a < n_free) owned[a] += owned[a] < 255;
+		if (b < n_free) partnered[b] += partnered[b] < 255;
 	}
+	order_blocks(n_free);
 	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
 	used_owned.assign(n_free, 0);
 	used_partnered.assign(n_free, 0);
@@ -145,7 +170,8 @@ void PairList::fold_surplus(std::uint32_t next_place)
 	}
 	for (std::size_t b = 1; b < block_fold_end.size(); ++b)
 		block_fold_end[b] = std::max(block_fold_end[b], block_fold_end[b - 1]);
-	forces.assign(next_place, PairForce<double>{});
+	forces.resize(next_place);
+	std::fill_n(forces.begin(), first_place, PairForce<double>{});  // no pair, no force
 }
 
 void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)
@@ -208,6 +234,7 @@ void PairList::point(KernelData& data)
 	data.effective_masses = effective_masses.data();
 	data.forces = forces.data();
 	data.slots = slots.data();
+	data.block_order = block_order.data();
 	data.folds = folds.data();
 	data.fold_sources = fold_sources.data();
 	data.block_pair_end = block_pair_end.data();

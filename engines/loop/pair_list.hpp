@@ -52,6 +52,7 @@ private:
 	AlignedVector<double> slips, effective_radii, effective_masses;  // room for doubles; floats use half of it
 	AlignedVector<PairForce<double>> forces;
 	AlignedVector<ForceSlots> slots;
+	std::vector<BlockOrder> block_order;
 	std::vector<Fold> folds;
 	std::vector<std::uint32_t> fold_sources, block_pair_end, block_fold_end;
 
@@ -60,8 +61,12 @@ private:
 		bool partner;
 	};
 	std::vector<Surplus> surplus;
+	std::vector<std::uint32_t> early;
+	std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;  // by grain: pairs selected, slots filled
 
 	void place_pairs(const GrainRow* rows, std::uint32_t n_free, int threads, std::uint32_t dummy_row);
+	std::uint32_t pad(std::uint32_t places, PairLink dummy);
+	void order_blocks(std::uint32_t n_free);
 	void fill_slots(std::uint32_t n_free);
 	void fold_surplus(std::uint32_t next_place);
 	void list_members(std::uint32_t n_free, std::uint32_t n_grains);

@@ -97,12 +97,22 @@ struct Search {
 	}
 };
 
-void sort_by_owner(std::vector<Candidate>& pairs)
+/// Counting sort by owner; the few pairs of one owner by insertion.
+void sort_by_owner(std::vector<Candidate>& pairs, std::uint32_t n_grains)
 {
-	const auto before = [](const Candidate& a, const Candidate& b) {
-		return a.first != b.first ? a.first < b.first : a.second < b.second;
-	};
-	std::sort(pairs.begin(), pairs.end(), before);
+	static thread_local std::vector<std::uint32_t> begin, end;
+	static thread_local std::vector<Candidate> sorted;
+	begin.assign(n_grains + 1, 0);
+	sorted.resize(pairs.size());
+	for (const Candidate& pair : pairs) ++begin[pair.first + 1];
+	for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+	end = begin;
+	for (const Candidate& pair : pairs) {
+		std::uint32_t at = end[pair.first]++;
+		for (; at > begin[pair.first] && sorted[at - 1].second > pair.second; --at) sorted[at] = sorted[at - 1];
+		sorted[at] = pair;
+	}
+	pairs.swap(sorted);
 }
 
 }  // namespace
@@ -126,7 +136,7 @@ void find_candidates(const SearchInput& in, const CellGrid& grid, std::vector<Ca
 	}
 	if (Search{ in, grid, others }.several_bodies_may_meet()) Search{ in, grid, others }.between_members();
 	candidates.insert(candidates.end(), others.begin(), others.end());
-	sort_by_owner(candidates);
+	sort_by_owner(candidates, in.n_grains);
 }
 
 }  // namespace graindrive::loop
