@@ -30,7 +30,8 @@ static void register_everything()
 /// BOOST_PYTHON_MODULE would return the half-made module beside the exception, which Python reports as a SystemError without its text.
 extern "C" __attribute__((visibility("default"))) PyObject* PyInit__engines()
 {
-	static PyModuleDef definition = { PyModuleDef_HEAD_INIT, "_engines", nullptr, -1, nullptr, nullptr, nullptr, nullptr, nullptr };
+	static PyModuleDef definition = { PyModuleDef_HEAD_INIT, "_engines", nullptr, -1, nullptr, nullptr, nullptr, nullptr,
+		nullptr };
 	PyObject* module = boost::python::detail::init_module(definition, register_everything);
 	if (!PyErr_Occurred()) return module;
 	Py_XDECREF(module);

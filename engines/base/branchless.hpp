@@ -26,7 +26,7 @@ auto truncated(const S& trial, const S& limit)
 	using std::abs;
 	const auto cut = abs(trial) > limit;
 	const S signed_limit = select(trial < S(0), S(-limit), limit);
-	return Truncated<S, std::decay_t<decltype(cut)>> { select(cut, signed_limit, trial), cut };
+	return Truncated<S, std::decay_t<decltype(cut)>>{ select(cut, signed_limit, trial), cut };
 }
 
 inline Truncated<Vector3r, bool> truncated(const Vector3r& trial, const Real& limit)

@@ -8,18 +8,18 @@ namespace graindrive {
 
 /// One contact on a body, or on a member of a clump.
 struct BodyContact {
-	int member;                ///< id of the touched body: the body itself or the clump's member
-	int partner;               ///< id of the other body
-	Vector3r lever;            ///< from the centre of the body (the clump's centre for a member) to the contact point [m]
-	Vector3r normal_force;     ///< on the body [N]
-	Vector3r tangential_force; ///< on the body [N]
-	bool slipping;             ///< Coulomb's bound was active
+	int member;                 ///< id of the touched body: the body itself or the clump's member
+	int partner;                ///< id of the other body
+	Vector3r lever;             ///< from the centre of the body (the clump's centre for a member) to the contact point [m]
+	Vector3r normal_force;      ///< on the body [N]
+	Vector3r tangential_force;  ///< on the body [N]
+	bool slipping;              ///< Coulomb's bound was active
 };
 
 /// Force and torque about the body's centre.
 struct Wrench {
-	Vector3r force = Vector3r::Zero();  ///< [N]
-	Vector3r torque = Vector3r::Zero(); ///< [N m]
+	Vector3r force = Vector3r::Zero();   ///< [N]
+	Vector3r torque = Vector3r::Zero();  ///< [N m]
 };
 
 /// Whatever can tell the contacts at the present positions: YADE's interactions, or GrainLoop.

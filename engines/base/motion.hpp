@@ -13,9 +13,9 @@ namespace graindrive {
 struct Oscillation {
 	enum class Form { displacement, velocity };
 
-	Real amplitude; ///< A [m] or [m/s]
-	Real period;    ///< T [s]
-	Real phase;     ///< phi [rad]
+	Real amplitude;  ///< A [m] or [m/s]
+	Real period;     ///< T [s]
+	Real phase;      ///< phi [rad]
 	Form form;
 
 	Real displacement(Real t) const

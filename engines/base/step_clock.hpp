@@ -9,9 +9,9 @@ namespace graindrive {
 /// O.time sums dt and is off by ~1e-12 of itself after ten million steps; this product is exact to round-off. The anchor moves
 /// when dt changes and when the step count jumps back (O.resetTime): time then goes on from the end of the last step.
 struct StepClock {
-	long anchor_step = -1; ///< step of the anchor; -1 before the first reading
-	Real anchor_time = 0;  ///< time at the anchor [s]
-	Real dt = 0;           ///< step since the anchor [s]
+	long anchor_step = -1;  ///< step of the anchor; -1 before the first reading
+	Real anchor_time = 0;   ///< time at the anchor [s]
+	Real dt = 0;            ///< step since the anchor [s]
 	long last_step = -1;
 
 	bool started() const { return anchor_step >= 0; }

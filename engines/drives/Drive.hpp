@@ -24,7 +24,8 @@ public:
 	{
 		visit("work", &Drive::work, "work done on the grains so far, through the driven degrees of freedom [J]");
 		visit("force", &Drive::force, "force of the grains on what is driven, at the last step [N]");
-		visit("torque", &Drive::torque, "torque of the grains about the body's centre (a drum's axisPoint), at the last step [N m]");
+		visit("torque", &Drive::torque,
+			"torque of the grains about the body's centre (a drum's axisPoint), at the last step [N m]");
 		visit("elapsed", &Drive::elapsed, "time since the drive began, at the start of the last step [s]");
 		visit("anchorStep", &Drive::anchorStep, "step that the drive's time is counted from; -1 before the first step");
 		visit("anchorTime", &Drive::anchorTime, "time since the drive began at that step [s]");
@@ -44,13 +45,13 @@ protected:
 	bool begins()
 	{
 		settle_in();
-		StepClock clock { anchorStep, anchorTime, anchorDt, lastStep };
+		StepClock clock{ anchorStep, anchorTime, anchorDt, lastStep };
 		const bool first = !clock.started();
 		elapsed = clock.at(this->scene->iter, this->scene->dt);
 		anchorStep = clock.anchor_step, anchorTime = clock.anchor_time, anchorDt = clock.dt, lastStep = clock.last_step;
 		return first;
 	}
-	Real end_of_step() const { return StepClock { anchorStep, anchorTime, anchorDt, lastStep }.next(); }
+	Real end_of_step() const { return StepClock{ anchorStep, anchorTime, anchorDt, lastStep }.next(); }
 
 	yade::State& state_of(int body) const { return *body_of(*this->scene, body, Self::class_name).state; }
 
@@ -80,13 +81,14 @@ private:
 		const auto same = [](const auto& a, const auto& b) { return !a.owner_before(b) && !b.owner_before(a); };
 		const boost::weak_ptr<yade::Factorable> here = this->scene->weak_from_this(), nowhere;
 		if (same(here, home_)) return;
-		if (!home_.expired()) throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make one for every scene");
+		if (!home_.expired())
+			throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make one for every scene");
 		if (!same(home_, nowhere)) anchorStep = lastStep = -1, anchorTime = work = 0;
 		home_ = here;
 	}
 
 	SceneContacts contacts_;
-	boost::weak_ptr<yade::Factorable> home_; // scene that the drive began in
+	boost::weak_ptr<yade::Factorable> home_;  // scene that the drive began in
 };
 
 /// Base of the drives of one body or clump.

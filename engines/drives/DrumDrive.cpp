@@ -3,17 +3,18 @@
 
 namespace graindrive {
 
-const char* const DrumDrive::documentation
-        = "Turns a set of bodies rigidly about an axis through `axisPoint` (the drum of Oba, Otsuki 2025).\n\n"
-          "X_i(t) = axisPoint + R(Omega t) (X_i(0) - axisPoint), spin Omega. Each body gets the velocity of the chord that takes it\n"
-          "there, so that radii and angles keep the closed form to round-off. Place it after the contacts and before the integrator.\n"
-          "Raises ValueError for non-finite values.";
+const char* const DrumDrive::documentation =
+	"Turns a set of bodies rigidly about an axis through `axisPoint` (the drum of Oba, Otsuki 2025).\n\n"
+	"X_i(t) = axisPoint + R(Omega t) (X_i(0) - axisPoint), spin Omega. Each body gets the velocity of the chord that takes it\n"
+	"there, so that radii and angles keep the closed form to round-off. Place it after the contacts and before the integrator.\n"
+	"Raises ValueError for non-finite values.";
 
 void DrumDrive::check() const
 {
 	require(axisPoint.allFinite(), "DrumDrive.axisPoint must be finite", axisPoint.transpose());
 	require(angularVelocity.allFinite(), "DrumDrive.angularVelocity must be finite", angularVelocity.transpose());
-	require(origins.empty() || origins.size() == bodies.size(), "DrumDrive.bodies cannot change once the drum turns; make a new DrumDrive", bodies.size());
+	require(origins.empty() || origins.size() == bodies.size(),
+		"DrumDrive.bodies cannot change once the drum turns; make a new DrumDrive", bodies.size());
 }
 
 void DrumDrive::take_origins()

@@ -3,13 +3,13 @@
 
 namespace graindrive {
 
-const char* const OscillationDrive::documentation
-        = "Oscillates a body or clump along x, y or z; its other degrees of freedom stay as they are.\n\n"
-          "form='displacement': x(t) = x0 + A [sin(2 pi t/T + phi) - sin phi]\n"
-          "form='velocity':     v(t) = A sin(2 pi t/T + phi), x its integral\n\n"
-          "Both are readings of Tripura et al., whose text writes the velocity and uses the displacement. t starts at the drive's\n"
-          "first step. Place it after the contacts and before the integrator. Raises ValueError for a period <= 0, a negative or\n"
-          "non-finite amplitude, an unknown form, or a direction that is not an axis.";
+const char* const OscillationDrive::documentation =
+	"Oscillates a body or clump along x, y or z; its other degrees of freedom stay as they are.\n\n"
+	"form='displacement': x(t) = x0 + A [sin(2 pi t/T + phi) - sin phi]\n"
+	"form='velocity':     v(t) = A sin(2 pi t/T + phi), x its integral\n\n"
+	"Both are readings of Tripura et al., whose text writes the velocity and uses the displacement. t starts at the drive's\n"
+	"first step. Place it after the contacts and before the integrator. Raises ValueError for a period <= 0, a negative or\n"
+	"non-finite amplitude, an unknown form, or a direction that is not an axis.";
 
 void OscillationDrive::check() const
 {
@@ -26,7 +26,8 @@ int OscillationDrive::axis() const
 	int index = -1, count = 0;
 	for (int i = 0; i < 3; ++i)
 		if (direction[i] != 0) index = i, ++count;
-	require(count == 1, "OscillationDrive.direction must be along x, y or z (only an axis leaves the others free)", direction.transpose());
+	require(count == 1, "OscillationDrive.direction must be along x, y or z (only an axis leaves the others free)",
+		direction.transpose());
 	return index;
 }
 

@@ -3,11 +3,11 @@
 
 namespace graindrive {
 
-const char* const SpinTranslateDrive::documentation
-        = "Moves a body or clump with constant velocity and spin (the Magnus study's intruder: Kumar, Dhiman, Reddy 2019).\n\n"
-          "X(t) = X0 + V t and, if all rotations are driven, orientation = rotation(omega t) * orientation(0). `dofs` names what is\n"
-          "driven ('xyzXYZ'); the rest stays free. Place it after the contacts and before the integrator. Raises ValueError for\n"
-          "non-finite values and unknown letters.";
+const char* const SpinTranslateDrive::documentation =
+	"Moves a body or clump with constant velocity and spin (the Magnus study's intruder: Kumar, Dhiman, Reddy 2019).\n\n"
+	"X(t) = X0 + V t and, if all rotations are driven, orientation = rotation(omega t) * orientation(0). `dofs` names what is\n"
+	"driven ('xyzXYZ'); the rest stays free. Place it after the contacts and before the integrator. Raises ValueError for\n"
+	"non-finite values and unknown letters.";
 
 void SpinTranslateDrive::check() const
 {

@@ -14,9 +14,11 @@ public:
 	{
 		visit("velocity", &SpinTranslateDrive::velocity, "V [m/s]");
 		visit("spin", &SpinTranslateDrive::spin, "omega [rad/s]");
-		visit("dofs", &SpinTranslateDrive::dofs, "driven degrees of freedom: letters of 'xyzXYZ' (capitals are rotations); the others stay free");
+		visit("dofs", &SpinTranslateDrive::dofs,
+			"driven degrees of freedom: letters of 'xyzXYZ' (capitals are rotations); the others stay free");
 		visit("origin", &SpinTranslateDrive::origin, "position at the start [m]; taken from the body at the first step");
-		visit("originOrientation", &SpinTranslateDrive::originOrientation, "orientation at the start; taken from the body at the first step");
+		visit("originOrientation", &SpinTranslateDrive::originOrientation,
+			"orientation at the start; taken from the body at the first step");
 		common_attributes(visit);
 	}
 	void check() const;

@@ -14,7 +14,8 @@ public:
 	template <class Visit>
 	static void common_attributes(Visit&& visit)
 	{
-		visit("leverArm", &ContactLaw::leverArm, "where the tangential force acts: 'radius' (LAMMPS, the papers) or 'contactPoint'");
+		visit("leverArm", &ContactLaw::leverArm,
+			"where the tangential force acts: 'radius' (LAMMPS, the papers) or 'contactPoint'");
 	}
 	std::string get2DFunctorType1() const override { return "ScGeom"; }
 	std::string get2DFunctorType2() const override { return "FrictPhys"; }
@@ -30,7 +31,7 @@ public:
 		if (geom.penetrationDepth < 0) return false;
 		const int id1 = interaction->getId1(), id2 = interaction->getId2();
 		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
-		if (!phys) { // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
+		if (!phys) {  // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
 			const Real friction = static_cast<const yade::FrictPhys&>(*iphys).tangensOfFrictionAngle;
 			const auto made = contact_phys_of(*this->scene, geom, id1, id2, friction);
 			iphys = made;
@@ -48,8 +49,8 @@ private:
 		yade::Scene& scene = *this->scene;
 		const yade::State& s1 = *(*scene.bodies)[id1]->state;
 		const yade::State& s2 = *(*scene.bodies)[id2]->state;
-		const laws::SpherePair pair { geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, s1.vel, s2.vel, s1.angVel, s2.angVel,
-			                          phys.effectiveRadius, phys.effectiveMass };
+		const laws::SpherePair pair{ geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, s1.vel, s2.vel, s1.angVel,
+			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
 		const auto arm = leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point;
 		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
 		const auto answer = laws::respond(law, pair, phys.slip, scene.dt, arm);

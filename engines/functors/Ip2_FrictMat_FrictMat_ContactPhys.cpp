@@ -3,10 +3,11 @@
 
 namespace graindrive {
 
-const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation
-        = "Makes the ContactPhys of a new contact: reduced radius and mass of the pair, friction coefficient.\n\n"
-          "A clump's member counts with the mass of its clump. A body at rest with every degree of freedom blocked (walls, bases) counts\n"
-          "as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms.";
+const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation =
+	"Makes the ContactPhys of a new contact: reduced radius and mass of the pair, friction coefficient.\n\n"
+	"A clump's member counts with the mass of its clump. A body at rest with every degree of freedom blocked (walls, bases) "
+    "counts\n"
+	"as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms.";
 
 /// 1/m [1/kg]; 0 for a frozen body.
 static Real inverse_mass(const yade::Scene& scene, int id)
@@ -23,19 +24,21 @@ yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, const ya
 	auto phys = boost::make_shared<ContactPhys>();
 	const Real inverse = inverse_mass(scene, id1) + inverse_mass(scene, id2);
 	phys->effectiveRadius = geom.refR1 * geom.refR2 / (geom.refR1 + geom.refR2);
-	phys->effectiveMass = inverse > 0 ? 1 / inverse : 0; // two frozen bodies: no dashpot
+	phys->effectiveMass = inverse > 0 ? 1 / inverse : 0;  // two frozen bodies: no dashpot
 	phys->tangensOfFrictionAngle = friction;
 	return phys;
 }
 
-void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material>& first, const yade::shared_ptr<yade::Material>& second,
-                                           const yade::shared_ptr<yade::Interaction>& interaction)
+void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material>& first,
+	const yade::shared_ptr<yade::Material>& second, const yade::shared_ptr<yade::Interaction>& interaction)
 {
 	if (interaction->phys) return;
 	const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
 	if (!geom) throw std::invalid_argument(std::string(class_name) + " needs a ScGeom; use Ig2_Sphere_Sphere_ScGeom");
-	const Real angle = std::min(static_cast<const yade::FrictMat&>(*first).frictionAngle, static_cast<const yade::FrictMat&>(*second).frictionAngle);
-	interaction->phys = contact_phys_of(*scene, *geom, interaction->getId1(), interaction->getId2(), friction >= 0 ? friction : std::tan(angle));
+	const Real angle = std::min(
+		static_cast<const yade::FrictMat&>(*first).frictionAngle, static_cast<const yade::FrictMat&>(*second).frictionAngle);
+	interaction->phys =
+		contact_phys_of(*scene, *geom, interaction->getId1(), interaction->getId2(), friction >= 0 ? friction : std::tan(angle));
 }
 
 }  // namespace graindrive

@@ -5,7 +5,8 @@
 namespace graindrive {
 
 /// The pair's reduced radius and mass, and its friction coefficient.
-yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, const yade::ScGeom& geom, int id1, int id2, Real friction);
+yade::shared_ptr<ContactPhys> contact_phys_of(
+	const yade::Scene& scene, const yade::ScGeom& geom, int id1, int id2, Real friction);
 
 class Ip2_FrictMat_FrictMat_ContactPhys : public Registered<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor> {
 public:
@@ -15,12 +16,12 @@ public:
 	static void attributes(Visit&& visit)
 	{
 		visit("friction", &Ip2_FrictMat_FrictMat_ContactPhys::friction,
-		      "friction coefficient of every contact [-]; negative: tan of the smaller FrictMat.frictionAngle");
+			"friction coefficient of every contact [-]; negative: tan of the smaller FrictMat.frictionAngle");
 	}
 	std::string get2DFunctorType1() const override { return "FrictMat"; }
 	std::string get2DFunctorType2() const override { return "FrictMat"; }
 	void go(const yade::shared_ptr<yade::Material>& first, const yade::shared_ptr<yade::Material>& second,
-	        const yade::shared_ptr<yade::Interaction>& interaction) override;
+		const yade::shared_ptr<yade::Interaction>& interaction) override;
 
 	Real friction = -1;
 };

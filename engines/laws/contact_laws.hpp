@@ -62,7 +62,8 @@ struct HertzHistory {
 		const T spring = slip + c.tangential_velocity * c.dt;
 		const auto bound = truncated(T(-(k_t * spring + dashpot)), S(mu * abs(normal)));
 		const T shortened = (bound.value + dashpot) * (S(-1) / k_t);
-		return Response<S, T, decltype(bound.cut)> { hertz * normal, hertz * bound.value, select(bound.cut, shortened, spring), bound.cut };
+		return Response<S, T, decltype(bound.cut)>{ hertz * normal, hertz * bound.value, select(bound.cut, shortened, spring),
+			bound.cut };
 	}
 };
 
@@ -79,10 +80,10 @@ struct HertzHistory {
 /// constant fraction of critical needs delta_n, which is the reading here (LIGGGHTS takes the same).
 template <class P = Real>
 struct HertzRestitution {
-	P effective_young;     ///< E_eff = E / (2 (1 - nu^2)) [Pa]
-	P tangential_ratio;    ///< c = k*_t / k*_n [-], > 0
-	P damping_fraction;    ///< b, fraction of critical damping [-]
-	P mu;                  ///< friction coefficient [-]
+	P effective_young;   ///< E_eff = E / (2 (1 - nu^2)) [Pa]
+	P tangential_ratio;  ///< c = k*_t / k*_n [-], > 0
+	P damping_fraction;  ///< b, fraction of critical damping [-]
+	P mu;                ///< friction coefficient [-]
 
 	template <class S, class T>
 	auto operator()(const Kinematics<S, T>& c, const T& slip) const
@@ -101,7 +102,7 @@ struct HertzRestitution {
 		const T spring = slip + c.tangential_velocity * c.dt;
 		const auto bound = truncated(T(-(stiffness * spring + dashpot)), S(mu * abs(normal)));
 		const T shortened = (bound.value + dashpot) * (S(-1) / stiffness);
-		return Response<S, T, decltype(bound.cut)> { normal, bound.value, select(bound.cut, shortened, spring), bound.cut };
+		return Response<S, T, decltype(bound.cut)>{ normal, bound.value, select(bound.cut, shortened, spring), bound.cut };
 	}
 };
 
@@ -125,7 +126,7 @@ struct SpringDashpot {
 		const S normal = k_n * c.overlap - eta * c.normal_velocity;
 		const T spring = slip + c.tangential_velocity * c.dt;
 		const auto bound = truncated(T(-(k_t * spring + eta * c.tangential_velocity)), S(mu * abs(normal)));
-		return Response<S, T, decltype(bound.cut)> { normal, bound.value, select(bound.cut, slip, spring), bound.cut };
+		return Response<S, T, decltype(bound.cut)>{ normal, bound.value, select(bound.cut, slip, spring), bound.cut };
 	}
 };
 

@@ -6,9 +6,9 @@ namespace graindrive::laws {
 
 /// Positions and motions of a touching pair; n points from grain 1 to grain 2.
 struct SpherePair {
-	Vector3r normal;            ///< n [-]
-	Real overlap;               ///< delta [m]
-	Real radius1, radius2;      ///< [m]
+	Vector3r normal;        ///< n [-]
+	Real overlap;           ///< delta [m]
+	Real radius1, radius2;  ///< [m]
 	Vector3r velocity1, velocity2;
 	Vector3r spin1, spin2;
 	Real effective_radius, effective_mass;
@@ -49,7 +49,8 @@ PairResponse respond(const Law& law, const SpherePair& pair, const Vector3r& sli
 	const Vector3r approach = pair.velocity1 - pair.velocity2;
 	const Real closing = approach.dot(n);
 	const Vector3r tangential = approach - closing * n + (arm1 * pair.spin1 + arm2 * pair.spin2).cross(n);
-	const Kinematics<Real, Vector3r> contact { pair.overlap, -closing, tangential, pair.effective_radius, pair.effective_mass, dt };
+	const Kinematics<Real, Vector3r> contact{ pair.overlap, -closing, tangential, pair.effective_radius, pair.effective_mass,
+		dt };
 	const auto answer = law(contact, into_tangent_plane(slip, n));
 	const Vector3r twist = n.cross(answer.tangential);
 	return { answer.normal * n, -answer.tangential, arm1 * twist, arm2 * twist, answer.slip, answer.slipping };

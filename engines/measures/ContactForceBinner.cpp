@@ -5,14 +5,15 @@
 
 namespace graindrive {
 
-const char* const ContactForceBinner::documentation
-        = "Forces of the grains on one body or clump, by the angle of the contact point from its centre.\n\n"
-          "Per bin: normal force (positive when it pushes inwards) [N], tangential force (positive counter-clockwise) [N], contacts,\n"
-          "slipping contacts, force vector [N]; for the whole body: force, torque, contacts. Each with mean and variance over the\n"
-          "samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64 points, 8 degrees\n"
-          "(Guillard, Forterre, Pouliquen 2014, Eq. A4). The bins' forces sum to the total force to round-off. A clump's contacts are\n"
-          "its members'. Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over all\n"
-          "samples, empty ones included. Raises ValueError for a count, width or interval out of range.";
+const char* const ContactForceBinner::documentation =
+	"Forces of the grains on one body or clump, by the angle of the contact point from its centre.\n\n"
+	"Per bin: normal force (positive when it pushes inwards) [N], tangential force (positive counter-clockwise) [N], contacts,\n"
+	"slipping contacts, force vector [N]; for the whole body: force, torque, contacts. Each with mean and variance over the\n"
+	"samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64 points, 8 degrees\n"
+	"(Guillard, Forterre, Pouliquen 2014, Eq. A4). The bins' forces sum to the total force to round-off. A clump's contacts are\n"
+	"its members'. Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over "
+    "all\n"
+	"samples, empty ones included. Raises ValueError for a count, width or interval out of range.";
 
 void ContactForceBinner::check() const
 {
@@ -21,11 +22,13 @@ void ContactForceBinner::check() const
 	require(count >= 0 && count <= 3600, "ContactForceBinner.count must lie in 0..3600", count);
 	require(width > 0 && width <= pi / 2, "ContactForceBinner.width must lie in (0, pi/2] rad", width);
 	require(kernel == "bins" || width >= 2 * pi / bin_count(),
-	        "ContactForceBinner.width must be at least the spacing of the points, or their weights do not sum to 1; take more points or a wider Gaussian", width);
+		"ContactForceBinner.width must be at least the spacing of the points, or their weights do not sum to 1; take more points "
+	    "or a wider Gaussian",
+		width);
 	require(every >= 1, "ContactForceBinner.every must be at least 1", every);
 	require(planeNormal.norm() > 0, "ContactForceBinner.planeNormal must not be zero", planeNormal.transpose());
 	require(direction.cross(planeNormal).norm() > 1e-9 * direction.norm() * planeNormal.norm(),
-	        "ContactForceBinner.direction must not be zero or along planeNormal", direction.transpose());
+		"ContactForceBinner.direction must not be zero or along planeNormal", direction.transpose());
 }
 
 void ContactForceBinner::callPostLoad()
@@ -64,7 +67,8 @@ void ContactForceBinner::add(const BodyContact& contact, const Vector3r& e1, con
 	const Vector3r outward = std::cos(theta) * e1 + std::sin(theta) * e2, along = std::cos(theta) * e2 - std::sin(theta) * e1;
 	// Sign from the side that the normal force pushes to; magnitude from the law, whatever the shape's own normal is.
 	const Real inward_force = contact.normal_force.dot(outward) <= 0 ? contact.normal_force.norm() : -contact.normal_force.norm();
-	const Real along_force = contact.tangential_force.dot(along) >= 0 ? contact.tangential_force.norm() : -contact.tangential_force.norm();
+	const Real along_force =
+		contact.tangential_force.dot(along) >= 0 ? contact.tangential_force.norm() : -contact.tangential_force.norm();
 	around.shares(theta, shares_);
 	for (const auto& [bin, weight] : shares_) {
 		sample_[slot(normal, bin)] += weight * inward_force;

@@ -21,7 +21,7 @@ struct BinShare {
 class AngularKernel {
 public:
 	/// @param width  zeta [rad]; 0 for bins
-	AngularKernel(int count, Real width) : count_(count), width_(width), spacing_(2 * pi / count) { }
+	AngularKernel(int count, Real width) : count_(count), width_(width), spacing_(2 * pi / count) {}
 
 	int count() const { return count_; }
 	/// Centre of bin m [rad], in (-pi, pi).
@@ -30,13 +30,13 @@ public:
 	void shares(Real theta, std::vector<BinShare>& out) const
 	{
 		out.clear();
-		const Real place = (theta + pi) / spacing_; // in bins from -pi
+		const Real place = (theta + pi) / spacing_;  // in bins from -pi
 		const int nearest = std::min(count_ - 1, std::max(0, int(std::floor(place))));
 		if (width_ == 0) {
 			out.push_back({ nearest, 1 });
 			return;
 		}
-		const int reach = int(std::ceil(8.9 * width_ / spacing_)); // a wide one goes round more than once
+		const int reach = int(std::ceil(8.9 * width_ / spacing_));  // a wide one goes round more than once
 		// w(m+1)/w(m) falls geometrically, so two exponentials serve a whole side.
 		const Real offset = (place - Real(0.5) - nearest) * spacing_, a = Real(1) / (2 * width_ * width_);
 		const Real peak = std::sqrt(2 * pi) / (count_ * width_) * std::exp(-a * offset * offset);

@@ -39,7 +39,8 @@ np::ndarray force_vectors(const Binner& binner)
 template <int first, bool variance>
 Vector3r of_body(const Binner& binner)
 {
-	return { binner.total_statistic(first, variance), binner.total_statistic(first + 1, variance), binner.total_statistic(first + 2, variance) };
+	return { binner.total_statistic(first, variance), binner.total_statistic(first + 1, variance),
+		binner.total_statistic(first + 2, variance) };
 }
 
 template <int which, bool variance>
@@ -75,8 +76,10 @@ void bind_measures()
 	cls.add_property("angles", angles, "centres of the bins [rad], shape (bins,), in (-pi, pi)");
 	cls.add_property("normalForce", of_bins<Binner::normal, false>, "mean normal force [N], shape (bins,)");
 	cls.add_property("normalForceVariance", of_bins<Binner::normal, true>, "its variance over samples [N^2], shape (bins,)");
-	cls.add_property("tangentialForce", of_bins<Binner::tangential, false>, "mean tangential force, counter-clockwise [N], shape (bins,)");
-	cls.add_property("tangentialForceVariance", of_bins<Binner::tangential, true>, "its variance over samples [N^2], shape (bins,)");
+	cls.add_property(
+		"tangentialForce", of_bins<Binner::tangential, false>, "mean tangential force, counter-clockwise [N], shape (bins,)");
+	cls.add_property(
+		"tangentialForceVariance", of_bins<Binner::tangential, true>, "its variance over samples [N^2], shape (bins,)");
 	cls.add_property("contacts", of_bins<Binner::contacts, false>, "mean number of contacts, shape (bins,)");
 	cls.add_property("contactsVariance", of_bins<Binner::contacts, true>, "its variance over samples, shape (bins,)");
 	cls.add_property("slippingContacts", of_bins<Binner::slipping, false>, "mean number of slipping contacts, shape (bins,)");

@@ -52,7 +52,7 @@ py::dict contacts(const yade::Scene& scene)
 	for (std::size_t id = 0; id < scene.bodies->size(); ++id) {
 		if (!scene.bodies->exists(int(id))) continue;
 		for (const auto& [partner, interaction] : (*scene.bodies)[id]->intrs) {
-			if (interaction->getId1() != int(id) || !interaction->isReal()) continue; // each contact once, from its first body
+			if (interaction->getId1() != int(id) || !interaction->isReal()) continue;  // each contact once, from its first body
 			const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
 			const auto* phys = dynamic_cast<const yade::FrictPhys*>(interaction->phys.get());
 			if (!geom || !phys) continue;
@@ -80,11 +80,13 @@ void bind_bulk()
 {
 	np::initialize();
 	py::def("body_table", bodies, (py::arg("scene")),
-	        "Spheres of a scene (O._sceneObj) as arrays: id, clump, radius [m], mass [kg], shape (n,); position [m], velocity [m/s],\n"
-	        "spin [rad/s], shape (n, 3). A clump appears through its members.");
+		"Spheres of a scene (O._sceneObj) as arrays: id, clump, radius [m], mass [kg], shape (n,); position [m], velocity "
+	    "[m/s],\n"
+		"spin [rad/s], shape (n, 3). A clump appears through its members.");
 	py::def("contact_table", contacts, (py::arg("scene")),
-	        "Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic image),\n"
-	        "normal from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
+		"Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic "
+	    "image),\n"
+		"normal from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
 }
 
 }  // namespace graindrive

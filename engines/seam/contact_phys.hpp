@@ -12,7 +12,8 @@ public:
 	static void attributes(Visit&& visit)
 	{
 		visit("effectiveRadius", &ContactPhys::effectiveRadius, "R_i R_j / (R_i + R_j) [m]");
-		visit("effectiveMass", &ContactPhys::effectiveMass, "m_i m_j / (m_i + m_j); a frozen partner counts as infinitely heavy [kg]");
+		visit("effectiveMass", &ContactPhys::effectiveMass,
+			"m_i m_j / (m_i + m_j); a frozen partner counts as infinitely heavy [kg]");
 		visit("slip", &ContactPhys::slip, "tangential spring s [m], of body 1 against body 2");
 		visit("slipping", &ContactPhys::slipping, "true if the tangential force was cut at Coulomb's bound in the last step");
 	}

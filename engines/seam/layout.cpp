@@ -13,7 +13,7 @@
 #include "engines/seam/memory_probe.hpp"
 #include "engines/seam/yade.hpp"
 
-#pragma GCC diagnostic ignored "-Winvalid-offsetof" // the point of this file
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"  // the point of this file
 
 namespace graindrive::seam {
 namespace {
@@ -26,9 +26,9 @@ constexpr const char* proven_version = "2023.02a";
 
 [[noreturn]] void refuse(const string& what)
 {
-	const string message = "graindrive does not fit this YADE: " + what
-	        + ". Graindrive's engines were not loaded. Use Debian 12's YADE " + proven_version
-	        + ", or build Graindrive against your YADE's source tree (cmake -DYADE_INCLUDE_DIR=...).";
+	const string message = "graindrive does not fit this YADE: " + what +
+	                       ". Graindrive's engines were not loaded. Use Debian 12's YADE " + proven_version +
+	                       ", or build Graindrive against your YADE's source tree (cmake -DYADE_INCLUDE_DIR=...).";
 	PyErr_SetString(PyExc_ImportError, message.c_str());
 	py::throw_error_already_set();
 	throw std::logic_error("unreachable");
@@ -55,7 +55,12 @@ string raw(const T& value)
 
 class Proof {
 public:
-	explicit Proof(const py::dict& damage) : damage_(damage), yade_(py::import("yade.wrapper")), eigen_(py::import("yade.minieigenHP")) { }
+	explicit Proof(const py::dict& damage)
+		: damage_(damage),
+		  yade_(py::import("yade.wrapper")),
+		  eigen_(py::import("yade.minieigenHP"))
+	{
+	}
 
 	int run()
 	{
@@ -92,7 +97,8 @@ private:
 		for (long i = 0; i < py::len(names); ++i) {
 			const string name = py::extract<string>(names[i]);
 			if (std::find(members_.begin(), members_.end(), name) == members_.end())
-				throw std::invalid_argument("damage names '" + name + "', which the proof does not look at; proven_members() lists what it does");
+				throw std::invalid_argument(
+					"damage names '" + name + "', which the proof does not look at; proven_members() lists what it does");
 		}
 	}
 
@@ -110,8 +116,10 @@ private:
 	{
 		std::ostringstream message;
 		message << member << " is expected at byte " << at << " but ";
-		if (found == string::npos) message << "its value was not found in the object";
-		else message << "was found at byte " << found;
+		if (found == string::npos)
+			message << "its value was not found in the object";
+		else
+			message << "was found at byte " << found;
 		refuse(message.str());
 	}
 	string memory_of(const py::object& object) const
@@ -122,7 +130,8 @@ private:
 
 	/// Sets an attribute by YADE's own means (which reaches read-only ones too), then looks for it.
 	template <class T>
-	void attribute(const string& cls, const string& name, const py::object& object, std::size_t offset, const py::object& value, const T& bytes)
+	void attribute(const string& cls, const string& name, const py::object& object, std::size_t offset, const py::object& value,
+		const T& bytes)
 	{
 		py::dict update;
 		update[name] = value;
@@ -197,7 +206,7 @@ private:
 			if (block < expected) break;
 			if (block < expected + 16) return;
 		}
-		if (expected <= block && block < expected + 32) return; // a heap full of such blocks: the proof is 16 bytes coarser
+		if (expected <= block && block < expected + 32) return;  // a heap full of such blocks: the proof is 16 bytes coarser
 		std::ostringstream message;
 		message << cls << " is expected to take " << expected << " bytes but has a block of " << block;
 		refuse(message.str());
@@ -216,7 +225,7 @@ private:
 		py::object object = make(cls);
 		object.attr("label") = "sentinel";
 		const auto length = raw(std::size_t(8)) + "sentinel";
-		holds(string(cls) + ".label", object, offset + 8, length); // std::string: data pointer, length, short text
+		holds(string(cls) + ".label", object, offset + 8, length);  // std::string: data pointer, length, short text
 	}
 	void engine_and_functors()
 	{
@@ -242,11 +251,12 @@ private:
 		const Real position[3] = { next(), next(), next() };
 		state.attr("pos") = eigen_.attr("Vector3")(position[0], position[1], position[2]);
 		holds("State.pos", state, offsetof(yade::State, pos), raw(position));
-		const Real unit[4] = { 0.5, -0.5, 0.5, 0.5 }; // stored x, y, z, w; made from w, x, y, z
+		const Real unit[4] = { 0.5, -0.5, 0.5, 0.5 };  // stored x, y, z, w; made from w, x, y, z
 		state.attr("ori") = eigen_.attr("Quaternion")(unit[3], unit[0], unit[1], unit[2]);
 		holds("State.ori", state, offsetof(yade::State, ori), raw(unit));
 		state.attr("blockedDOFs") = "xZ";
-		holds("State.blockedDOFs", state, offsetof(yade::State, blockedDOFs), raw(unsigned(yade::State::DOF_X | yade::State::DOF_RZ)));
+		holds("State.blockedDOFs", state, offsetof(yade::State, blockedDOFs),
+			raw(unsigned(yade::State::DOF_X | yade::State::DOF_RZ)));
 	}
 
 	void body_and_shape()
@@ -288,12 +298,12 @@ private:
 	void interaction()
 	{
 		py::object contact = make("Interaction"), geom = make("ScGeom"), phys = make("FrictPhys");
-#ifndef GRAINDRIVE_YADE_HEADERS // there the ids are private
+#ifndef GRAINDRIVE_YADE_HEADERS  // there the ids are private
 		integer<int>("Interaction", "id1", contact, offsetof(yade::Interaction, id1));
 		integer<int>("Interaction", "id2", contact, offsetof(yade::Interaction, id2));
 #endif
 		flag("Interaction.isActive", contact, offsetof(yade::Interaction, isActive),
-		     [&](bool value) { contact.attr("isActive") = value; }); // no archived attribute, so updateAttrs does not know it
+			[&](bool value) { contact.attr("isActive") = value; });  // no archived attribute, so updateAttrs does not know it
 		integer<long>("Interaction", "iterMadeReal", contact, offsetof(yade::Interaction, iterMadeReal));
 		contact.attr("geom") = geom;
 		contact.attr("phys") = phys;
@@ -318,7 +328,7 @@ private:
 
 	void scene()
 	{
-		py::object scene = make("Scene"); // a scene of our own: the user's is not touched
+		py::object scene = make("Scene");  // a scene of our own: the user's is not touched
 		real("Scene", "dt", scene, offsetof(yade::Scene, dt));
 		real("Scene", "time", scene, offsetof(yade::Scene, time));
 		integer<long>("Scene", "iter", scene, offsetof(yade::Scene, iter));
@@ -336,7 +346,8 @@ private:
 		const auto vptr = target ? probe_.read<Address>(*target) : std::nullopt;
 		++facts_;
 		if (vptr && symbol_at(*vptr) == vtable) return;
-		refuse(member + " is expected to point at an object with " + vtable + " but has " + (vptr ? symbol_at(*vptr) : "no pointer"));
+		refuse(member + " is expected to point at an object with " + vtable + " but has " +
+			   (vptr ? symbol_at(*vptr) : "no pointer"));
 	}
 	/// O.engines is put back as it was.
 	void engine_list()
@@ -345,7 +356,8 @@ private:
 		py::list one;
 		one.append(engine);
 		omega.attr("engines") = one;
-		const auto begin = probe_.read<Address>(address_of(omega.attr("_sceneObj")) + declared("Scene.engines", offsetof(yade::Scene, engines)));
+		const auto begin =
+			probe_.read<Address>(address_of(omega.attr("_sceneObj")) + declared("Scene.engines", offsetof(yade::Scene, engines)));
 		const auto first = begin ? probe_.read<Address>(*begin) : std::nullopt;
 		omega.attr("engines") = before;
 		++facts_;
@@ -357,7 +369,8 @@ private:
 		const Address start = address_of(scene) + declared("Scene.forces", offsetof(yade::Scene, forces));
 		const auto first = probe_.read<Address>(start), last = probe_.read<Address>(start + 8);
 		++facts_;
-		if (!first || !last || *last <= *first || (*last - *first) % sizeof(std::vector<Vector3r>) != 0 || *last - *first > 1u << 16)
+		if (!first || !last || *last <= *first || (*last - *first) % sizeof(std::vector<Vector3r>) != 0 ||
+			*last - *first > 1u << 16)
 			refuse("Scene.forces does not start with YADE's arrays of forces, one a thread");
 		const Vector3r sentinel(next(), next(), next());
 		auto* container = reinterpret_cast<yade::ForceContainer*>(start);
@@ -370,7 +383,8 @@ private:
 	}
 
 	/// Slot by slot, the symbols behind an object's vptr.
-	void slots(const string& cls, const py::object& object, std::size_t vptr_offset, int first, const std::vector<string>& expected)
+	void slots(
+		const string& cls, const py::object& object, std::size_t vptr_offset, int first, const std::vector<string>& expected)
 	{
 		const auto vptr = probe_.read<Address>(address_of(object) + vptr_offset);
 		for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -379,30 +393,33 @@ private:
 			++facts_;
 			if (found.find(expected[i]) != string::npos) continue;
 			std::ostringstream message;
-			message << "virtual function " << first + i << " of " << cls << " is expected to be " << expected[i] << " but is " << found;
+			message << "virtual function " << first + i << " of " << cls << " is expected to be " << expected[i] << " but is "
+					<< found;
 			refuse(message.str());
 		}
 	}
 	void virtual_functions()
 	{
-		const std::vector<string> serializable { "::getBaseClassName", "::getBaseClassNumber", "::getClassName", "::pySetAttr", "::pyDict",
-			"::pyDictCustom", "::callPostLoad", "::checkPyClassRegistersItself", "::pyRegisterClass", "::pyHandleCustomCtorArgs" };
+		const std::vector<string> serializable{ "::getBaseClassName", "::getBaseClassNumber", "::getClassName", "::pySetAttr",
+			"::pyDict", "::pyDictCustom", "::callPostLoad", "::checkPyClassRegistersItself", "::pyRegisterClass",
+			"::pyHandleCustomCtorArgs" };
 		py::object engine = make("Engine"), law = make("LawFunctor"), iphys = make("IPhysFunctor"), phys = make("FrictPhys");
-		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>> { { "Engine", engine }, { "LawFunctor", law },
-		             { "IPhysFunctor", iphys }, { "FrictPhys", phys } }) {
+		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>>{
+				 { "Engine", engine }, { "LawFunctor", law }, { "IPhysFunctor", iphys }, { "FrictPhys", phys } }) {
 			slots(cls, object, 0, 0, { "::~" + cls, "::~" + cls });
 			slots(cls, object, 0, 2, serializable);
 		}
 		slots("Engine", engine, 0, 12, { "yade::Engine::isActivated()", "yade::Engine::action()" });
 		slots("FrictPhys", phys, 0, 12,
-		      { "::modifyClassIndex", "::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin",
-		        "::incrementMaxCurrentlyUsedClassIndexOfKin" });
+			{ "::modifyClassIndex", "::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin",
+				"::incrementMaxCurrentlyUsedClassIndexOfKin" });
 		slots("FrictPhys (Indexable)", phys, 24, 0,
-		      { "::incrementMaxCurrentlyUsedClassIndexOfKin", "::modifyClassIndex", "::~FrictPhys", "::~FrictPhys", "::getClassIndex",
-		        "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin" });
-		std::vector<string> wrapper { "::checkOrder" };
+			{ "::incrementMaxCurrentlyUsedClassIndexOfKin", "::modifyClassIndex", "::~FrictPhys", "::~FrictPhys",
+				"::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin" });
+		std::vector<string> wrapper{ "::checkOrder" };
 		for (const char* name : { "::go(", "::goReverse(" }) wrapper.insert(wrapper.end(), 7, name);
-		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>> { { "LawFunctor", law }, { "IPhysFunctor", iphys } }) {
+		for (const auto& [cls, object] :
+			std::vector<std::pair<string, py::object>>{ { "LawFunctor", law }, { "IPhysFunctor", iphys } }) {
 			slots(cls, object, 0, 12, { "::getFunctorTypes", "::get2DFunctorType1", "::get2DFunctorType2" });
 			slots(cls + " (wrapper)", object, 80, 0, { "::~" + cls, "::~" + cls });
 			slots(cls + " (wrapper)", object, 80, 2, wrapper);
@@ -438,11 +455,12 @@ py::list proven_members()
 void bind_layout()
 {
 	py::def("prove_layout", prove_layout, (py::arg("damage") = py::dict()),
-	        "Prove that YADE's classes lie in memory as Graindrive's engines expect.\n\n"
-	        "damage: {'State.vel': 8} shifts a declared offset by bytes (for the test that the proof can fail).\n"
-	        "Returns the number of facts proven. Raises ImportError naming class, member, expected and found, ValueError for a name\n"
-	        "that the proof does not look at.");
-	py::def("proven_members", proven_members, "The names that prove_layout's damage may have: members as 'Class.member', sizes as 'Class.size'.");
+		"Prove that YADE's classes lie in memory as Graindrive's engines expect.\n\n"
+		"damage: {'State.vel': 8} shifts a declared offset by bytes (for the test that the proof can fail).\n"
+		"Returns the number of facts proven. Raises ImportError naming class, member, expected and found, ValueError for a name\n"
+		"that the proof does not look at.");
+	py::def("proven_members", proven_members,
+		"The names that prove_layout's damage may have: members as 'Class.member', sizes as 'Class.size'.");
 }
 
 }  // namespace graindrive::seam

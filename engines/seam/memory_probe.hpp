@@ -11,7 +11,7 @@ namespace graindrive::seam {
 
 class MemoryProbe {
 public:
-	MemoryProbe() : file_(::open("/proc/self/mem", O_RDONLY | O_CLOEXEC)) { }
+	MemoryProbe() : file_(::open("/proc/self/mem", O_RDONLY | O_CLOEXEC)) {}
 	~MemoryProbe()
 	{
 		if (file_ >= 0) ::close(file_);
@@ -25,7 +25,8 @@ public:
 	std::optional<T> read(std::uintptr_t address) const
 	{
 		T value;
-		if (::pread(file_, &value, sizeof value, static_cast<off_t>(address)) != static_cast<ssize_t>(sizeof value)) return std::nullopt;
+		if (::pread(file_, &value, sizeof value, static_cast<off_t>(address)) != static_cast<ssize_t>(sizeof value))
+			return std::nullopt;
 		return value;
 	}
 

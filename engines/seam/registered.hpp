@@ -77,8 +77,11 @@ class Registered : public Base {
 public:
 	std::string getClassName() const override { return Self::class_name; }
 	int getBaseClassNumber() const override { return 1; }
-	std::string getBaseClassName(unsigned int i = 0) const override { return i == 0 ? seam::base_name(static_cast<const Base*>(nullptr)) : ""; }
-	void pyRegisterClass(boost::python::object) override { } // `bind` has done it
+	std::string getBaseClassName(unsigned int i = 0) const override
+	{
+		return i == 0 ? seam::base_name(static_cast<const Base*>(nullptr)) : "";
+	}
+	void pyRegisterClass(boost::python::object) override {}  // `bind` has done it
 	void callPostLoad() override { self().check(); }
 
 	boost::python::dict pyDict() const override
@@ -104,7 +107,8 @@ public:
 			boost::python::extract<Value> extracted(value);
 			if (!extracted.check()) {
 				const std::string got = boost::python::extract<std::string>(boost::python::str(value));
-				PyErr_SetString(PyExc_TypeError, (std::string(Self::class_name) + "." + key + " cannot be made from " + got).c_str());
+				PyErr_SetString(
+					PyExc_TypeError, (std::string(Self::class_name) + "." + key + " cannot be made from " + got).c_str());
 				boost::python::throw_error_already_set();
 			}
 			self().*member = extracted();
@@ -112,14 +116,15 @@ public:
 		return found;
 	}
 
-	void check() const { }
+	void check() const {}
 
 	template <class Archive>
 	void serialize(Archive& archive, unsigned)
 	{
 		boost::serialization::void_cast_register<Self, Base>();
 		seam::serialize_base(archive, static_cast<Base&>(*this));
-		Self::attributes([&](const char* name, auto member, const char*) { archive& boost::serialization::make_nvp(name, self().*member); });
+		Self::attributes(
+			[&](const char* name, auto member, const char*) { archive& boost::serialization::make_nvp(name, self().*member); });
 		if constexpr (Archive::is_loading::value) self().callPostLoad();
 	}
 
@@ -137,13 +142,14 @@ void set_or_explain(Self& object, const std::string& key, const py::object& valu
 {
 	if (object.set(key, value)) return;
 	const py::object wrapped(py::ptr(&object));
-	if (PyObject_HasAttrString(wrapped.ptr(), key.c_str())) { // dead, label, ...
+	if (PyObject_HasAttrString(wrapped.ptr(), key.c_str())) {  // dead, label, ...
 		object.pySetAttr(key, value);
 		return;
 	}
 	std::string names;
 	Self::attributes([&](const char* name, auto, const char*) { names += std::string(names.empty() ? "" : ", ") + name; });
-	PyErr_SetString(PyExc_AttributeError, (std::string(Self::class_name) + " has no attribute '" + key + "'; it has " + names + ", label, dead").c_str());
+	PyErr_SetString(PyExc_AttributeError,
+		(std::string(Self::class_name) + " has no attribute '" + key + "'; it has " + names + ", label, dead").c_str());
 	py::throw_error_already_set();
 }
 
@@ -182,15 +188,18 @@ void set_checked(Self& object, Value Self::*member, const Value& value)
 template <class Self, class Base = yade::Engine>
 auto bind(const char* documentation)
 {
-	py::class_<Self, boost::shared_ptr<Self>, py::bases<Base>, boost::noncopyable> cls(Self::class_name, documentation, py::no_init);
-	cls.def("__init__", py::raw_function(&construct<Self>, 1)); // first: later overloads are tried before it
+	py::class_<Self, boost::shared_ptr<Self>, py::bases<Base>, boost::noncopyable> cls(
+		Self::class_name, documentation, py::no_init);
+	cls.def("__init__", py::raw_function(&construct<Self>, 1));  // first: later overloads are tried before it
 	cls.def(py::init<>());
 	Self::attributes([&](const char* name, auto member, const char* doc) {
 		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;
 		const auto get = [member](const Self& object) -> Value { return object.*member; };
-		const auto set = [member](Self& object, const Value& value) { set_checked(object, static_cast<Value Self::*>(member), value); };
+		const auto set = [member](Self& object, const Value& value) {
+			set_checked(object, static_cast<Value Self::*>(member), value);
+		};
 		cls.add_property(name, py::make_function(get, py::default_call_policies(), boost::mpl::vector<Value, const Self&>()),
-		                 py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Self&, const Value&>()), doc);
+			py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Self&, const Value&>()), doc);
 	});
 	return cls;
 }

@@ -8,7 +8,8 @@ namespace graindrive {
 yade::Body& body_of(const yade::Scene& scene, int id, const std::string& who)
 {
 	if (!scene.bodies->exists(id))
-		throw std::runtime_error(who + ": body " + std::to_string(id) + " does not exist in this scene; give the id that O.bodies.append returned");
+		throw std::runtime_error(
+			who + ": body " + std::to_string(id) + " does not exist in this scene; give the id that O.bodies.append returned");
 	return *(*scene.bodies)[id];
 }
 
@@ -25,7 +26,8 @@ const std::vector<int>& SceneContacts::members_of(int body)
 {
 	const yade::Body& driven = body_of(*scene_, body, "contacts");
 	members_.clear();
-	if (!driven.isClump()) members_.push_back(body);
+	if (!driven.isClump())
+		members_.push_back(body);
 	else
 		for (const auto& [id, place] : static_cast<const yade::Clump&>(*driven.shape).members)
 			if (scene_->bodies->exists(id)) members_.push_back(id);
@@ -58,10 +60,10 @@ void SceneContacts::contacts_on(int body, std::vector<BodyContact>& contacts)
 			// From the member's own centre: the contact point of YADE lies in body 1's periodic image.
 			const Real reach = (first ? geom->refR1 : geom->refR2) - geom->penetrationDepth / 2;
 			const Vector3r outward = first ? geom->normal : Vector3r(-geom->normal);
-			const Real sign = first ? -1 : 1; // normalForce and shearForce act on body 2
+			const Real sign = first ? -1 : 1;  // normalForce and shearForce act on body 2
 			const auto* ours = dynamic_cast<const ContactPhys*>(phys);
-			contacts.push_back({ id, partner, member.state->pos - centre + reach * outward, sign * phys->normalForce, sign * phys->shearForce,
-			                     ours ? ours->slipping : at_coulomb_bound(*phys) });
+			contacts.push_back({ id, partner, member.state->pos - centre + reach * outward, sign * phys->normalForce,
+				sign * phys->shearForce, ours ? ours->slipping : at_coulomb_bound(*phys) });
 		}
 	}
 }

@@ -68,9 +68,9 @@ public:
 	virtual bool isActivated();
 	virtual void action();
 
-	Scene* scene; ///< the simulation, set by YADE before every step
+	Scene* scene;  ///< the simulation, set by YADE before every step
 private:
-	char timing_[32]; // execution count and time, shared_ptr to timing deltas
+	char timing_[32];  // execution count and time, shared_ptr to timing deltas
 public:
 	bool dead;
 	int ompThreads;
@@ -90,7 +90,7 @@ public:
 
 /// A base of YADE's that engines read but never derive from: Serializable and Indexable, no more.
 class IndexableLayout : public Serializable {
-	void* indexable_; // the second vptr
+	void* indexable_;  // the second vptr
 };
 
 class Bound;
@@ -103,13 +103,13 @@ public:
 };
 
 class FrictMat : public Material {
-	char elastic_[16]; // young, poisson
+	char elastic_[16];  // young, poisson
 public:
 	Real frictionAngle;
 };
 
 class Shape : public IndexableLayout {
-	char looks_[64]; // colour, wire, highlight, drawing
+	char looks_[64];  // colour, wire, highlight, drawing
 };
 
 class Sphere : public Shape {
@@ -130,6 +130,7 @@ public:
 /// Position, velocity and inertia of a body.
 class State : public IndexableLayout {
 	char references_and_mutex_[56];
+
 public:
 	Vector3r pos;
 	Quaternionr ori;
@@ -160,7 +161,7 @@ public:
 	shared_ptr<State> state;
 	shared_ptr<Shape> shape;
 	shared_ptr<Bound> bound;
-	MapId2IntrT intrs; ///< contacts and near pairs by the partner's id
+	MapId2IntrT intrs;  ///< contacts and near pairs by the partner's id
 	int clumpId;
 
 	id_t getId() const { return id; }
@@ -176,18 +177,17 @@ public:
 	bool exists(Body::id_t id) const;
 };
 
-class IGeom : public IndexableLayout {
-};
+class IGeom : public IndexableLayout {};
 
 class GenericSpheresContact : public IGeom {
 public:
-	Vector3r normal;       ///< from body 1 to body 2
-	Vector3r contactPoint; ///< in body 1's image
+	Vector3r normal;        ///< from body 1 to body 2
+	Vector3r contactPoint;  ///< in body 1's image
 	Real refR1, refR2;
 };
 
 class ScGeom : public GenericSpheresContact {
-	char axes_[64]; // cached rotations, references to the radii
+	char axes_[64];  // cached rotations, references to the radii
 public:
 	Real penetrationDepth;
 };
@@ -204,13 +204,13 @@ public:
 class NormPhys : public IPhys {
 public:
 	Real kn;
-	Vector3r normalForce; ///< on body 2
+	Vector3r normalForce;  ///< on body 2
 };
 
 class NormShearPhys : public NormPhys {
 public:
 	Real ks;
-	Vector3r shearForce; ///< on body 2
+	Vector3r shearForce;  ///< on body 2
 };
 
 class FrictPhys : public NormShearPhys {
@@ -234,8 +234,10 @@ public:
 class Interaction : public Serializable {
 public:
 	bool isActive;
+
 private:
 	alignas(8) char functor_cache_[56];
+
 public:
 	Body::id_t id1, id2;
 	long iterMadeReal;
@@ -262,10 +264,13 @@ class InteractionContainer;
 
 class Scene : public Serializable {
 	int host_name_max_;
+
 public:
 	ForceContainer forces;
+
 private:
 	char internals_[400];
+
 public:
 	Real dt;
 	long iter;
@@ -276,12 +281,16 @@ public:
 	long stopAtIter;
 	Real stopAtTime;
 	bool isPeriodic;
+
 private:
 	char tags_[55];
+
 public:
 	std::vector<shared_ptr<Engine>> engines;
+
 private:
 	char next_engines_[24];
+
 public:
 	shared_ptr<BodyContainer> bodies;
 	shared_ptr<InteractionContainer> interactions;
@@ -290,7 +299,7 @@ public:
 /// What dispatchers call for a pair of types.
 class Functor : public Serializable {
 public:
-	Functor() : scene(nullptr) { }
+	Functor() : scene(nullptr) {}
 	~Functor() override;
 	std::string getBaseClassName(unsigned int i = 0) const override;
 	int getBaseClassNumber() const override;
@@ -352,7 +361,8 @@ public:
 };
 
 /// Makes an interaction's `phys` from two materials.
-class IPhysFunctor : public BinaryDispatchFunctor<void, const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&> {
+class IPhysFunctor : public BinaryDispatchFunctor<void, const shared_ptr<Material>&, const shared_ptr<Material>&,
+						 const shared_ptr<Interaction>&> {
 public:
 	IPhysFunctor() = default;
 	~IPhysFunctor() override;
