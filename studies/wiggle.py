@@ -95,7 +95,8 @@ def check_room(p, outline):
     needed = right - left + 2 * swing + 4
     if needed > p.width:
         raise UsageError(
-            f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d; raise width or lower amplitude"
+            f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d;"
+            " raise width or lower amplitude"
         )
     if p.height - p.depth + bottom < 1:
         raise UsageError(

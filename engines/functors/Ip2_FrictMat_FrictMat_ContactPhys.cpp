@@ -6,7 +6,7 @@ namespace graindrive {
 const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation =
 	"Makes the ContactPhys of a new contact: reduced radius and mass of the pair, friction coefficient.\n\n"
 	"A clump's member counts with the mass of its clump. A body at rest with every degree of freedom blocked (walls, bases) "
-    "counts\n"
+	"counts\n"
 	"as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms.";
 
 /// 1/m [1/kg]; 0 for a frozen body.

@@ -12,7 +12,7 @@ const char* const ContactForceBinner::documentation =
 	"samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64 points, 8 degrees\n"
 	"(Guillard, Forterre, Pouliquen 2014, Eq. A4). The bins' forces sum to the total force to round-off. A clump's contacts are\n"
 	"its members'. Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over "
-    "all\n"
+	"all\n"
 	"samples, empty ones included. Raises ValueError for a count, width or interval out of range.";
 
 void ContactForceBinner::check() const
@@ -23,7 +23,7 @@ void ContactForceBinner::check() const
 	require(width > 0 && width <= pi / 2, "ContactForceBinner.width must lie in (0, pi/2] rad", width);
 	require(kernel == "bins" || width >= 2 * pi / bin_count(),
 		"ContactForceBinner.width must be at least the spacing of the points, or their weights do not sum to 1; take more points "
-	    "or a wider Gaussian",
+		"or a wider Gaussian",
 		width);
 	require(every >= 1, "ContactForceBinner.every must be at least 1", every);
 	require(planeNormal.norm() > 0, "ContactForceBinner.planeNormal must not be zero", planeNormal.transpose());

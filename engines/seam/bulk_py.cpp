@@ -81,11 +81,11 @@ void bind_bulk()
 	np::initialize();
 	py::def("body_table", bodies, (py::arg("scene")),
 		"Spheres of a scene (O._sceneObj) as arrays: id, clump, radius [m], mass [kg], shape (n,); position [m], velocity "
-	    "[m/s],\n"
+		"[m/s],\n"
 		"spin [rad/s], shape (n, 3). A clump appears through its members.");
 	py::def("contact_table", contacts, (py::arg("scene")),
 		"Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic "
-	    "image),\n"
+		"image),\n"
 		"normal from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
 }
 

@@ -19,7 +19,8 @@ class BedRecipe:
     """A bed of disks on a base of disks of diameter 1 at y = 0, periodic in x, around a held clump.
 
     Lengths in grain diameters d, times in sqrt(d/g), masses in rho d^2. `beads` are rows x, y of the held clump's bead
-    centres, `outline` rows x, y of its corners; both in the scene. `rest` is the kinetic energy per grain, in m g d, at which the bed counts as settled.
+    centres, `outline` rows x, y of its corners; both in the scene. `rest` is the kinetic energy per grain, in m g d, at
+    which the bed counts as settled.
     """
 
     width: float

@@ -22,7 +22,8 @@ class RunFolder:
     """Context in which one run writes its data; `path` is the folder while it grows, `out` its name when complete.
 
     On entry `out` is checked and its neighbour `.NAME.part-PID` made; nothing is ever overwritten. A good end writes
-    `run.h5` and `summary.json`, calls `figure(path)`, exports frames if vtk=1 and renames the folder to `out`. A UsageError removes it; a
+    `run.h5` and `summary.json`, calls `figure(path)`, exports frames if vtk=1 and renames the folder to `out`.
+    A UsageError removes it; a
     signal keeps what was measured as `NAME.interrupted`, any other failure as `NAME.failed`. Entering raises UsageError
     if `out` cannot be used, AlreadyComplete if the same run is there.
     """
