@@ -12,6 +12,8 @@ namespace {
 
 constexpr int cells_needed_when_periodic = 3;  // fewer, and a pair would be met through two of its images
 
+constexpr int cells_across_strip = 80;  // two columns of rows and forces: some 30 kB
+
 GridAxis axis(double low, double high, bool periodic, double reach, std::uint32_t n, const char* name)
 {
 	GridAxis a;
@@ -58,6 +60,8 @@ void CellGrid::lay(const GrainRow* rows, std::uint32_t n_free, const Box& box, d
 	fast_is_x = x.length < y.length;
 	slow = fast_is_x ? y : x;
 	fast = fast_is_x ? x : y;
+	const int strips_wanted = (fast.cells + cells_across_strip - 1) / cells_across_strip;
+	strip_height = (fast.cells + strips_wanted - 1) / strips_wanted;
 }
 
 void CellGrid::sort(const GrainRow* rows, std::uint32_t n_free, std::vector<std::uint32_t>& order)
@@ -65,7 +69,7 @@ void CellGrid::sort(const GrainRow* rows, std::uint32_t n_free, std::vector<std:
 	static thread_local std::vector<std::uint32_t> cell_of;
 	cell_of.resize(n_free);
 	order.resize(n_free);
-	start.assign(std::size_t(slow.cells + 2) * stride() + 2, 0);
+	start.assign(std::size_t(strips()) * (slow.cells + 2) * stride() + 2, 0);
 	for (std::uint32_t i = 0; i < n_free; ++i) {
 		cell_of[i] = index(slow.cell(slow_of(rows[i].x, rows[i].y)), fast.cell(fast_of(rows[i].x, rows[i].y)));
 		++start[cell_of[i] + 2];

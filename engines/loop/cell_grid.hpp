@@ -22,8 +22,11 @@ struct CellGrid {
 	bool fast_is_x = false;
 	std::vector<std::uint32_t> start;  ///< first grain of each cell, one entry more than cells
 
-	int stride() const { return fast.cells + 2; }
-	int index(int s, int f) const { return (s + 1) * stride() + f + 1; }
+	int strip_height = 1;  ///< cells of a strip: memory runs along strips, so that a strip's width of rows fits the nearest cache
+
+	int strips() const { return (fast.cells + strip_height - 1) / strip_height; }
+	int stride() const { return strip_height + 2; }
+	int index(int s, int f) const { return ((f / strip_height) * (slow.cells + 2) + s + 1) * stride() + f % strip_height + 1; }
 	double slow_of(double x, double y) const { return fast_is_x ? y : x; }
 	double fast_of(double x, double y) const { return fast_is_x ? x : y; }
 

@@ -18,18 +18,20 @@ struct PackForces {
 	S x, y, friction, normal, slip;
 };
 
-/// One pack of pairs: columns of row differences and sums -> forces on the owners.
+/// One pack of pairs: columns of row differences and sums -> forces on the owners. Flowing scenes list many pairs that do not
+/// touch; a pack without a touching one costs half.
 template <class Law, class S>
 inline PackForces<S> pack_forces(
 	const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
 {
 	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3], &reach = column[4], &surface_speed = column[5];
-	const S zero(0);
-	const S distance = sqrt(dx * dx + dy * dy);
+	const S zero(0), square = dx * dx + dy * dy;
+	const auto touching = square < reach * reach;
+	if (!any(touching)) return { zero, zero, zero, zero, zero };
+	const S distance = sqrt(square);
 	const S inverse = S(1) / distance;
 	const S n_x = dx * inverse, n_y = dy * inverse;
 	const S overlap = reach - distance;
-	const auto touching = overlap > zero;
 
 	laws::Kinematics<S, S> contact;
 	contact.overlap = max(overlap, zero);

@@ -30,14 +30,16 @@ struct Search {
 		if (d.x * d.x + d.y * d.y < reach * reach) found.push_back({ std::min(a, b), std::max(a, b), d.wrapped, false });
 	}
 
-	/// The cells ahead of (s, f) that lie across a periodic side.
+	/// The cells ahead of (s, f) that lie across a periodic side or in another strip.
 	void across_the_sides(std::uint32_t a, int s, int f) const
 	{
 		constexpr int ahead[4][2] = { { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } };
 		for (const auto& step : ahead) {
 			int to_s = s + step[0], to_f = f + step[1];
 			const bool over_s = to_s >= grid.slow.cells, over_f = to_f < 0 || to_f >= grid.fast.cells;
-			if ((!over_s && !over_f) || (over_s && !grid.slow.periodic) || (over_f && !grid.fast.periodic)) continue;
+			if ((over_s && !grid.slow.periodic) || (over_f && !grid.fast.periodic)) continue;
+			const bool same_strip = !over_f && to_f / grid.strip_height == f / grid.strip_height;
+			if (same_strip && !over_s) continue;
 			to_s %= grid.slow.cells;
 			to_f = (to_f + grid.fast.cells) % grid.fast.cells;
 			const int c = grid.index(to_s, to_f);
@@ -50,7 +52,9 @@ struct Search {
 		for (int s = 0; s < grid.slow.cells; ++s)
 			for (int f = 0; f < grid.fast.cells; ++f) {
 				const int c = grid.index(s, f), next = c + grid.stride();
-				const bool at_side = s + 1 == grid.slow.cells || f == 0 || f + 1 == grid.fast.cells;
+				const int in_strip = f % grid.strip_height;
+				const bool at_side =
+					s + 1 == grid.slow.cells || in_strip == 0 || in_strip + 1 == grid.strip_height || f + 1 == grid.fast.cells;
 				for (std::uint32_t a = grid.start[c]; a < grid.start[c + 1]; ++a) {
 					for (std::uint32_t b = a + 1; b < grid.start[c + 2]; ++b) if_near(a, b);
 					for (std::uint32_t b = grid.start[next - 1]; b < grid.start[next + 2]; ++b) if_near(a, b);

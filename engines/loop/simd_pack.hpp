@@ -148,6 +148,23 @@ struct PackMask {
 	}
 };
 
+/// True if it holds for any number of the pack.
+template <class T, int W, int N>
+bool any(const PackMask<T, W, N>& mask)
+{
+	auto joined = mask.m[0];
+	for (int n = 1; n < N; ++n) joined |= mask.m[n];
+#ifdef __AVX512F__
+	if constexpr (W * sizeof(T) == 64) return _mm512_test_epi64_mask((__m512i)joined, (__m512i)joined) != 0;
+#endif
+#ifdef __AVX2__
+	if constexpr (W * sizeof(T) == 32) return !_mm256_testz_si256((__m256i)joined, (__m256i)joined);
+#endif
+	for (int lane = 0; lane < W; ++lane)
+		if (joined[lane]) return true;
+	return false;
+}
+
 template <class T, int W, int N>
 Pack<T, W, N> select(const PackMask<T, W, N>& where, const Pack<T, W, N>& yes, const Pack<T, W, N>& no)
 {

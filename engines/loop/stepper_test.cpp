@@ -61,6 +61,15 @@ TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
 	EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
 }
 
+TEST(Stepper, finds_every_pair_where_memory_runs_in_strips)
+{
+	for (const bool y : { false, true }) {
+		Scene scene = crowd(92, 12, 10);  // more cells across than one strip has
+		scene.box.periodic_y = y;
+		EXPECT_LT(difference_from_plain(scene, 3), grown_round_off);
+	}
+}
+
 TEST(Stepper, springs_survive_searches_and_sorting)
 {
 	Scene often = crowd(10, 4, 3), seldom = often;

@@ -69,6 +69,7 @@ private:
 		const Grain &a = s.grains[i], &b = s.grains[j];
 		const double dx = nearest(b.x - a.x, s.box.periodic_x, s.box.x_high - s.box.x_low),
 					 dy = nearest(b.y - a.y, s.box.periodic_y, s.box.y_high - s.box.y_low);
+		if (dx * dx + dy * dy > 4) return;  // disks here have radii up to 0.5: this pair has long been apart
 		const double r = std::hypot(dx, dy), overlap = a.radius + b.radius - r;
 		if (overlap <= 0) {
 			slips.erase({ i, j });
