@@ -140,12 +140,12 @@ void Stepper::check_pairs() const
 		if (!pairs.place[c] || (is_led(pair.first) && is_led(pair.second))) continue;
 		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
 		const Separation d = separation(a, b, scene.box);
-		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y),
-					 allowed = guards.largest_overlap * std::min(a.radius, b.radius);
-		if (!(overlap <= allowed))
-			throw std::runtime_error(sentence("step ", steps, ": ", where(pair.first), " and ", where(pair.second),
-				" overlap by ", overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
-				"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
+		const double allowed = guards.largest_overlap * std::min(a.radius, b.radius), nearest = a.radius + b.radius - allowed;
+		if (d.x * d.x + d.y * d.y >= nearest * nearest) continue;
+		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y);
+		throw std::runtime_error(sentence("step ", steps, ": ", where(pair.first), " and ", where(pair.second), " overlap by ",
+			overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
+			"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
 	}
 }
 

@@ -132,6 +132,7 @@ void PairList::fill_slots(std::uint32_t n_free)
 	used_partnered.assign(n_free, 0);
 	slots.assign(n_free, ForceSlots{});
 	surplus.clear();
+	with_members.clear();
 	// A side with too many keeps its last slot for the fold of its surplus.
 	const auto give = [&](std::uint32_t grain, std::uint32_t at, std::uint8_t have, std::uint8_t& used, bool partner) {
 		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1)
@@ -143,7 +144,10 @@ void PairList::fill_slots(std::uint32_t n_free)
 		if (!place[c]) continue;
 		const std::uint32_t a = candidates[c].first, b = candidates[c].second;
 		if (a < n_free) give(a, place[c], owned[a], used_owned[a], false);
-		if (b < n_free) give(b, place[c], partnered[b], used_partnered[b], true);
+		if (b < n_free)
+			give(b, place[c], partnered[b], used_partnered[b], true);
+		else
+			with_members.push_back(c);
 	}
 	fold_surplus(early_end);
 }
@@ -178,10 +182,9 @@ void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)
 {
 	member_begin.assign(n_grains - n_free + 1, 0);
 	const auto each = [&](auto&& visit) {
-		for (std::uint32_t c = 0; c < candidates.size(); ++c) {
-			if (!place[c]) continue;
+		for (const std::uint32_t c : with_members) {
 			if (candidates[c].first >= n_free) visit(candidates[c].first - n_free, Share{ c, false });
-			if (candidates[c].second >= n_free) visit(candidates[c].second - n_free, Share{ c, true });
+			visit(candidates[c].second - n_free, Share{ c, true });
 		}
 	};
 	each([&](std::uint32_t member, Share) { ++member_begin[member + 1]; });

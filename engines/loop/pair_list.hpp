@@ -61,7 +61,7 @@ private:
 		bool partner;
 	};
 	std::vector<Surplus> surplus;
-	std::vector<std::uint32_t> early;
+	std::vector<std::uint32_t> early, with_members;                          // candidates
 	std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;  // by grain: pairs selected, slots filled
 
 	void place_pairs(const GrainRow* rows, std::uint32_t n_free, int threads, std::uint32_t dummy_row);

@@ -103,15 +103,17 @@ void Stepper::advance(int rank, long n)
 {
 	const bool known = body_forces_known;
 	team.barrier();  // everyone has read it before the first step changes it
-	for (long k = 0; k < n && !failure; ++k) one_step(rank, k == 0 && known);
+	for (long k = 0; k < n; ++k)
+		if (!one_step(rank, k == 0 && known)) return;
 }
 
-void Stepper::one_step(int rank, bool early_pairs_done)
+/// False if the lists could not be made; every thread learns it behind the same barrier.
+bool Stepper::one_step(int rank, bool early_pairs_done)
 {
 	if (!early_pairs_done) {
 		if (rank == 0) prepare();
 		team.barrier();
-		if (failure) return;
+		if (failure) return false;
 		compute_early_pairs(rank);
 		team.barrier();
 	}
@@ -120,6 +122,7 @@ void Stepper::one_step(int rank, bool early_pairs_done)
 	team.barrier();
 	if (rank == 0) finish();
 	team.barrier();
+	return true;
 }
 
 void Stepper::compute_early_pairs(int rank)

@@ -130,7 +130,7 @@ private:
 	static void visit_state(Visitor&& visit, Self& stepper);
 	void resume();
 	void advance(int rank, long n);
-	void one_step(int rank, bool early_pairs_done);
+	bool one_step(int rank, bool early_pairs_done);
 	void compute_early_pairs(int rank);
 	void check_pairs() const;
 	void prepare();

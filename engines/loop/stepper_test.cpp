@@ -208,6 +208,7 @@ TEST(Stepper, a_deep_overlap_stops_the_run_with_step_and_grain)
 	Scene scene;
 	scene.law = hertz();
 	scene.dt = 1e-4;
+	scene.threads = 2;  // the other thread must learn of it too
 	scene.grains = { disk(0, 0), disk(0.7, 0) };
 	Stepper deep(scene);
 	try {
