@@ -14,8 +14,11 @@ Cost: the paper's size is 63,000 disks and 1e7 steps; the demo about 1e3 disks a
     scripts/run wiggle help                         all keys
 """
 
+import functools
+import hashlib
 import os
 import sys
+from pathlib import Path
 from typing import Literal
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
@@ -25,7 +28,7 @@ import house  # noqa: E402, F401
 import numpy as np  # noqa: E402
 
 from graindrive import engines, headless, packing, progress, scene  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
+from graindrive.errors import UsageError, one_line  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import wiggle as results  # noqa: E402
@@ -55,11 +58,29 @@ class WiggleParameters(StudyParameters):
     height: float = quantity(195.0, "d", "height of the bed", gt=0)
     depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
-    frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1)
+    frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1, le=9999)
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
+
+    def identity(self):
+        """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
+        return {**super().identity(), **({"outline": contents_of(self.shape)} if names_a_file(self.shape) else {})}
+
+
+def names_a_file(shape):
+    """True for an outline's file, False for the name of a built-in shape."""
+    return shape.lower().endswith((".wkt", ".csv"))
+
+
+@functools.lru_cache(maxsize=None)
+def contents_of(path):
+    """Return what stands for a file's contents, as they are when the program first asks; "" if it cannot be read."""
+    try:
+        return hashlib.sha256(Path(path).expanduser().read_bytes()).hexdigest()[:12]
+    except (OSError, RuntimeError):
+        return ""
 
 
 PRESETS = {
@@ -79,11 +100,12 @@ def material(p):
 def intruder(p):
     """Return the outline about its centroid, shape (m, 2), and the clump of beads inside it."""
     try:
-        is_file = p.shape.endswith((".wkt", ".csv"))
-        outline = engines.read_outline(p.shape) if is_file else engines.outline_of(p.shape)
+        is_file = names_a_file(p.shape)
+        outline = engines.read_outline(os.path.expanduser(p.shape)) if is_file else engines.outline_of(p.shape)
         clump = engines.clump_of(outline, p.bead_diameter, p.intruder_mass)
-    except ValueError as error:
-        raise UsageError(f"shape={p.shape}: {error}") from None
+    except ValueError as error:  # without words where the file holds no text
+        reason = one_line(error, 400) or "it must be a text file of vertices in WKT or CSV"
+        raise UsageError(f"shape={one_line(p.shape)}: {reason}") from None
     return outline, clump
 
 
@@ -105,6 +127,15 @@ def check_room(p, outline):
     if p.depth < top:
         raise UsageError(f"depth={p.depth:g} d lets the body stick out of the bed by {top - p.depth:g} d; raise depth")
     return centred
+
+
+def check_period(p, dt):
+    """A sample of the motion is at least one time step."""
+    if p.amplitude and p.period < SAMPLES_PER_PERIOD * dt:
+        raise UsageError(
+            f"period={p.period:g} sqrt(d/g) must be at least {SAMPLES_PER_PERIOD} time steps, {SAMPLES_PER_PERIOD * dt:.3g};"
+            " raise it or lower dt_factor"
+        )
 
 
 def make_bed(p, outline_vertices, clump, at, dt, grains):
@@ -141,7 +172,8 @@ def run(p, folder):
     grains, dt = material(p), TIME_STEP * p.dt_factor
     outline, clump = intruder(p)
     vertices = check_room(p, outline)
-    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap)
+    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
+    check_period(p, dt)
     if folder.resumed:
         stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
         scene.load(folder.resumed["folder"])
@@ -199,6 +231,8 @@ def record(p, folder, stage):
 
     def sample(done):
         t, position, velocity = done * O.dt, state.pos, state.vel
+        if not position[1] > 0:
+            raise RuntimeError(f"step {done}: the body fell through the base, to y = {position[1]:.3g} d")
         track.append((t, position[1]))
         folder.append(
             t=t,
@@ -227,7 +261,7 @@ def record(p, folder, stage):
     if not folder.resumed:
         sample(0)
     timing = progress.run_blocks(steps - first, block, after_block, grains=len(ids), label="shaking")
-    folder.note(steps=timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    folder.note(steps=first + timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
     t, y = np.array(track).T
     rise = drift(t, y, p.period)
     folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)

@@ -60,11 +60,13 @@ def difference(run):
     """Return in words the first parameter in which the stored run differs: " (period=4.0 there)"."""
     with h5py.File(run.out / "run.h5", "r") as file:
         for key, value in run.parameters.identity().items():
+            if key not in run.parameters.__fields__:  # what a file that a parameter names holds
+                continue
             there = file[f"parameters/{key}"][()] if f"parameters/{key}" in file["/"] else "nothing"
             there = there.decode() if isinstance(there, bytes) else there
             if there != ("auto" if value is None else value):
                 return f" ({key}={there} there, {key}={value} asked for)"
-    return ""
+    return " (a file that they name has changed)"
 
 
 def is_alive(part):

@@ -107,13 +107,18 @@ def fast_loop():
     return next((engine for engine in O.engines if isinstance(engine, engines.GrainLoop)), None)
 
 
-def check_time_step(dt, material, smallest_radius, overlap):
-    """Return dt/dt_crit of two smallest grains overlapping by `overlap` radii; UsageError if it is over 1."""
-    critical = material.critical_time_step(smallest_radius, overlap)
+def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
+    """Return dt/dt_crit of two smallest grains overlapping by `overlap` radii; UsageError if it is over 1.
+
+    A body of mass `lightest` below a grain's asks for less: frequencies grow as 1/sqrt(mass).
+    """
+    grain = material.density * math.pi * smallest_radius**2
+    critical = material.critical_time_step(smallest_radius, overlap) * math.sqrt(min(1, lightest / grain))
     if dt > critical:
+        pair = "of two touching smallest grains" if lightest >= grain else f"of a body of mass {lightest:.3g}"
         raise UsageError(
-            f"time step {dt:.3g} is over the critical {critical:.3g} of two touching smallest grains;"
-            f" lower dt_factor, to {math.floor(90 * critical / dt) / 100:g} times its value or less"
+            f"time step {dt:.3g} is over the critical {critical:.3g} {pair};"
+            f" lower dt_factor, to {0.9 * critical / dt:.2g} times its value or less"
         )
     return dt / critical
 
@@ -130,7 +135,7 @@ def save(folder):
 
 
 def load(folder):
-    """Go on from a scene that `save` wrote, to the last bit."""
+    """Go on from a scene that `save` wrote; GrainLoop to the last bit, YADE's loop to round-off."""
     from yade import O
 
     O.load(str(folder / "scene.yade.gz"))

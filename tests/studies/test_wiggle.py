@@ -229,3 +229,33 @@ def test_the_cache_gives_the_same_bed_back_and_knows_every_parameter(monkeypatch
 def test_a_bed_without_room_is_refused():
     with pytest.raises(Exception, match="no room for grains"):
         packing.insert(bed_recipe(height=0.5))
+
+
+def test_an_outline_file_with_new_contents_is_another_run(home, tmp_path):
+    outline, keys = tmp_path / "arrow.csv", [*TINY, "time=0.05", "shape=arrow.csv", "out=arrow"]
+    keys.remove("time=0.5")
+    outline.write_text("0,0\n6,0\n3,6\n")
+    assert yade(home, "wiggle.py", *keys, folder=tmp_path).returncode == 0
+    again = yade(home, "wiggle.py", *keys, folder=tmp_path)
+    assert again.returncode == 0 and "is there already" in again.stderr
+    outline.write_text("0,0\n6,0\n3,5\n")
+    changed = yade(home, "wiggle.py", *keys, folder=tmp_path)
+    assert changed.returncode == 2 and "a file that they name has changed" in changed.stderr
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        (["out=/"], "is not the name of a run folder"),
+        (["frames=1e30"], "frames is a whole number"),
+        (["period=1e-6"], "must be at least 40 time steps"),
+        (["intruder_mass=1e-9"], "of a body of mass 1e-09"),
+        (["dt_factor=1e9"], "lower dt_factor, to 6.5e-09 times its value or less"),
+        (["shape=noise.WKT"], "shape=noise.WKT: it must be a text file of vertices"),
+    ],
+)
+def test_what_cannot_be_run_is_refused_in_one_line(home, tmp_path, keys, words):
+    (tmp_path / "noise.WKT").write_bytes(b"\xff \xfe\n" * 9)
+    refused = yade(home, "wiggle.py", "scale=smoke", *keys, folder=tmp_path)
+    assert refused.returncode == 2 and words in refused.stderr.splitlines()[-1], refused.stderr
+    assert files_below(tmp_path) == ["noise.WKT"]
