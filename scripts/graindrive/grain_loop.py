@@ -59,6 +59,11 @@ def use_yade_loop():
     from yade import O
 
     loop = find("GrainLoop")
+    if (loop.label or "GrainLoop") not in exchanged:
+        raise UsageError(
+            "the GrainLoop in O.engines was not made by use_grain_loop in this session, or was given another label;"
+            " put YADE's engines into O.engines yourself"
+        )
     loop.sync()
     before = {type(e).__name__: e for e in exchanged.pop(loop.label or "GrainLoop")}
     between = [e for e in O.engines if type(e).__name__ != "GrainLoop"]

@@ -31,6 +31,8 @@ class RunFolder:
     def __init__(self, parameters, *, study, figure=None):
         self.parameters, self.study, self.figure = parameters, study, figure
         self.out = Path(parameters.out).expanduser().absolute()
+        if not self.out.name:
+            raise UsageError(f"out={parameters.out} is not the name of a run folder; give one below it")
         self.path = self.out.with_name(f".{self.out.name}.part-{os.getpid()}")
         self.provenance, self.summary = provenance(parameters, study), {}
         self.series, self.frames, self.lock, self.made = None, 0, None, []
@@ -177,7 +179,13 @@ class RunFolder:
             self.close()
             self.remove_part()
             return
-        self.finish_data(ending)
+        try:
+            self.finish_data(ending)
+        except (OSError, RuntimeError) as error:  # a full disk: what stands there now is all that there is
+            print(
+                f"{self.study}: the data so far are in {self.path}, unfinished: {one_line(error, 200)}", file=sys.stderr
+            )
+            return
         self.close()
         run_remains.clear_work_files(self.path, keep_checkpoint=True)
         kept = run_remains.free_name(self.out, ending)

@@ -106,3 +106,17 @@ class TestFolder:
                 folder.frame(0.0, {"x": np.zeros(3)})
                 raise KeyboardInterrupt
         assert sorted(p.name for p in tmp_path.iterdir()) == ["a.interrupted", "a.interrupted-2"]
+
+
+def test_a_disk_that_fills_up_keeps_the_first_error_and_names_the_folder(tmp_path, monkeypatch, capsys):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(run_data, "merge", full)
+    with pytest.raises(RuntimeError, match="the engine's own"):
+        with RunFolder(StudyParameters(out=str(tmp_path / "a")), study="toy") as folder:
+            folder.declare_series(t="s")
+            folder.append(t=1)
+            raise RuntimeError("the engine's own")
+    assert f"the data so far are in {folder.path}, unfinished" in capsys.readouterr().err
+    assert run_data.read_series(folder.path / "run.h5")[0]["t"][0] == 1
