@@ -7,7 +7,8 @@ x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d,
 Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
 velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
 
-Cost: the paper's size is 63,000 disks and 1e7 steps; the demo about 1e3 disks and 2e4 steps, two minutes on YADE's loop.
+Cost: the paper's size is 63,000 disks and 1e7 steps, hours on two cores; the demo is 11,500 disks and 1.2e5 steps, a minute or
+two. The demo shows the motion, not the paper's rates: a shallower bed presses less, so it is fluidised farther.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run

@@ -53,7 +53,15 @@ protected:
 	}
 	Real end_of_step() const { return StepClock{ anchorStep, anchorTime, anchorDt, lastStep }.next(); }
 
-	yade::State& state_of(int body) const { return *body_of(*this->scene, body, Self::class_name).state; }
+	/// @throws std::runtime_error for a body that is not there, or a clump's member: its clump moves it
+	yade::State& state_of(int id) const
+	{
+		const yade::Body& body = body_of(*this->scene, id, Self::class_name);
+		if (body.isClumpMember())
+			throw std::runtime_error(std::string(Self::class_name) + ": body " + std::to_string(id) + " is a member of clump " +
+									 std::to_string(body.clumpId) + ", which moves it; drive the clump");
+		return *body.state;
+	}
 
 	Wrench wrench_on(int body) { return contacts_.of(this->scene).wrench_on(body); }
 
@@ -85,6 +93,20 @@ private:
 			throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make one for every scene");
 		if (!same(home_, nowhere)) anchorStep = lastStep = -1, anchorTime = work = 0;
 		home_ = here;
+		require_place();
+	}
+
+	/// Behind the integrator a drive would impose the velocity of a step that is over.
+	void require_place() const
+	{
+		std::string integrator;
+		for (const auto& engine : this->scene->engines) {
+			if (engine.get() == this && !integrator.empty())
+				throw std::runtime_error(std::string(Self::class_name) + " stands after " + integrator +
+										 " in O.engines; put it before, behind the contacts");
+			const std::string name = engine->getClassName();
+			if (name == "NewtonIntegrator" || name == "GrainLoop") integrator = name;
+		}
 	}
 
 	SceneContacts contacts_;

@@ -17,13 +17,14 @@ void OscillationDrive::check() const
 	require(std::isfinite(period) && period > 0, "OscillationDrive.period must be positive", period);
 	require(std::isfinite(phase), "OscillationDrive.phase must be finite", phase);
 	require(form == "displacement" || form == "velocity", "OscillationDrive.form must be 'displacement' or 'velocity'", form);
+	require(std::isfinite(origin), "OscillationDrive.origin must be finite", origin);
 	axis();
 }
 
 /// Only an axis can be blocked in YADE's State while the directions across it stay free.
 int OscillationDrive::axis() const
 {
-	int index = -1, count = 0;
+	int index = -1, count = direction.allFinite() ? 0 : 3;
 	for (int i = 0; i < 3; ++i)
 		if (direction[i] != 0) index = i, ++count;
 	require(count == 1, "OscillationDrive.direction must be along x, y or z (only an axis leaves the others free)",

@@ -13,6 +13,7 @@ void SpinTranslateDrive::check() const
 {
 	require(velocity.allFinite(), "SpinTranslateDrive.velocity must be finite", velocity.transpose());
 	require(spin.allFinite(), "SpinTranslateDrive.spin must be finite", spin.transpose());
+	require(origin.allFinite(), "SpinTranslateDrive.origin must be finite", origin.transpose());
 	driven_dofs();
 }
 

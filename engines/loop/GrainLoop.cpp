@@ -31,9 +31,14 @@ void GrainLoop::check() const
 		tangentialStiffness);
 	require(normalDamping >= 0 && tangentialDamping >= 0, "GrainLoop.normalDamping and tangentialDamping must not be negative",
 		std::min(normalDamping, tangentialDamping));
+	require(
+		gravity.allFinite() && gravity[2] == 0, "GrainLoop.gravity must be finite and in the plane, 0 in z", gravity.transpose());
+	require(std::isfinite(normalStiffness + tangentialStiffness + normalDamping + tangentialDamping + friction),
+		"GrainLoop's stiffnesses, dampings and friction must be finite", normalStiffness);
+	require(std::isfinite(skin) && skin >= 0, "GrainLoop.skin must be finite and not negative", skin);
 	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
-	require(periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0, "GrainLoop.periods must not be negative, and 0 in z",
-		periods.transpose());
+	require(periods.allFinite() && periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0,
+		"GrainLoop.periods must not be negative, and 0 in z", periods.transpose());
 	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius",
 		largestOverlap);
 	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
@@ -68,6 +73,7 @@ void GrainLoop::build()
 	if (scene->isPeriodic && periods.isZero(0))
 		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
 									"e.g. periods=(O.cell.size[0], 0, 0)");
+	require_alone();
 	map_ = loop::read_yade(*scene, watched, s);
 	std::vector<loop::Spring> carried;
 	for (std::size_t k = 0; k + 2 < springs.size(); k += 3) {
@@ -94,11 +100,40 @@ loop::Stepper& GrainLoop::stepper()
 	return *stepper_;
 }
 
+/// Bodies may be erased while the loop does not look; the few that it writes at every step are checked at every step.
+void GrainLoop::require_bodies(bool all) const
+{
+	const auto require_all = [&](const std::vector<int>& ids) {
+		for (const int id : ids)
+			if (id >= 0 && !scene->bodies->exists(id))
+				throw std::runtime_error("GrainLoop: body " + std::to_string(id) +
+										 " was erased from O.bodies; call sync() before such a change and read() after it");
+	};
+	require_all(map_.body_id);
+	if (all) require_all(map_.grain_id);
+}
+
+/// Two integrators would move everything twice.
+void GrainLoop::require_alone() const
+{
+	for (const auto& engine : scene->engines) {
+		const std::string name = engine->getClassName();
+		const bool rival =
+			(name == class_name && engine.get() != this) || name == "NewtonIntegrator" || name == "InteractionLoop";
+		if (rival && !engine->dead)
+			throw std::runtime_error(
+				"GrainLoop takes the place of collider, InteractionLoop and NewtonIntegrator; O.engines also holds " + name +
+				": remove it");
+	}
+}
+
 void GrainLoop::action()
 {
-	loop::Stepper& loop = stepper();
-	loop.compute_body_forces();
-	if (scene->stopAtIter != run_end_ || scene->iter % 100 == 0) release_what_moves();
+	stepper();
+	const bool look_at_all = scene->stopAtIter != run_end_ || scene->iter % 100 == 0;
+	require_bodies(look_at_all);
+	stepper_->compute_body_forces();
+	if (look_at_all) release_what_moves();
 	run_end_ = scene->stopAtIter;
 	follow_bodies();
 	try {

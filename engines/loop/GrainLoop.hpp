@@ -80,6 +80,8 @@ private:
 	void write_bodies();
 	void release_what_moves();
 	bool last_step_of_run() const;
+	void require_bodies(bool all) const;
+	void require_alone() const;
 	int body_index(int id);
 };
 

@@ -67,6 +67,35 @@ void write_state(const RigidBody& body, State& state)
 	state.ori = Quaternionr(std::cos(body.angle / 2), 0, 0, std::sin(body.angle / 2));
 }
 
+namespace {
+
+/// One plane and one ratio m R^2/I for all free disks: what the loop's equations of motion take for granted.
+void require_plane_disks(const yade::BodyContainer& bodies, const YadeBodies& map, Scene& scene)
+{
+	bool first = true;
+	Real z = 0;
+	for (std::size_t g = 0; g < map.grain_id.size(); ++g) {
+		const std::string name = "body " + std::to_string(map.grain_id[g]);
+		const State& state = *bodies[map.grain_id[g]]->state;
+		if (g == 0) z = state.pos[2];
+		if (std::abs(state.pos[2] - z) > 1e-9 * scene.grains[g].radius)
+			throw std::invalid_argument("GrainLoop moves disks in one plane z = const; " + name + " lies in another than body " +
+										std::to_string(map.grain_id[0]));
+		if (scene.grains[g].body != free_grain) continue;
+		const Real ratio = state.mass * scene.grains[g].radius * scene.grains[g].radius / state.inertia[2];
+		if (!(ratio > 0) || !std::isfinite(ratio))
+			throw std::invalid_argument(
+				"GrainLoop: mass and inertia of " + name + " must be positive; a disk has m R^2/2 about z");
+		if (first) scene.spin_response = ratio;
+		first = false;
+		if (std::abs(ratio - scene.spin_response) > 1e-6 * scene.spin_response)
+			throw std::invalid_argument(
+				"GrainLoop: free grains must share one m R^2/I (2 for disks, 2.5 for spheres); that of " + name + " differs");
+	}
+}
+
+}  // namespace
+
 YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watched, Scene& scene)
 {
 	const yade::BodyContainer& bodies = *yade_scene.bodies;
@@ -113,6 +142,7 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 		map.grain_id.push_back(int(id));
 		scene.grains.push_back(grain(body, disk->radius, mass, owner));
 	}
+	require_plane_disks(bodies, map, scene);
 	return map;
 }
 

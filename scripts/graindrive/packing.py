@@ -10,6 +10,7 @@ from .errors import UsageError
 from .material import HertzHistoryMaterial
 
 RECIPE = 2  # raise it when a bed of the same parameters comes out different
+MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
 
@@ -60,6 +61,10 @@ def insert(recipe):
     if count < 1:
         raise UsageError(
             f"a bed {recipe.width} d wide and {recipe.height} d high has no room for grains; make it larger"
+        )
+    if count > MOST_GRAINS:
+        raise UsageError(
+            f"a bed {recipe.width:g} d wide and {recipe.height:g} d high has {count} grains, more than {MOST_GRAINS}"
         )
     radii = engines.uniform_radii(count, recipe.d_min, recipe.d_max, recipe.seed)
     filled = np.sum(np.pi * radii**2) / INSERTION_FRACTION + recipe.outline_area

@@ -1,0 +1,102 @@
+"""GrainLoop in scenes that it cannot run: each is refused with the reason, and the process survives."""
+
+import math
+
+import pytest
+
+from graindrive import scene
+from graindrive.engines import GrainLoop, OscillationDrive
+from yade import O, utils, wrapper
+
+
+@pytest.fixture
+def bed():
+    """Five disks in a row on three frozen ones, under GrainLoop."""
+    O.reset()
+    base = scene.add_disks([0, 1, 2], [0, 0, 0], [0.5, 0.5, 0.5], 1.0, "xyzXYZ")
+    free = scene.add_disks([0.1, 1.1, 2.1, 3.1, 4.1], [5] * 5, [0.5] * 5, 1.0)
+    O.engines = [GrainLoop(gravity=(0, -1, 0), label="loop")]
+    O.dt = 1e-4
+    return base, free
+
+
+def step():
+    """One action of the loop in this thread, so that what it throws comes here."""
+    O.engines[-1]()
+
+
+@pytest.mark.parametrize("which", ["base", "free"])
+def test_an_erased_body_ends_the_run_and_not_the_process(bed, which):
+    O.run(5, True)
+    O.bodies.erase(bed[which == "free"][0])
+    with pytest.raises(RuntimeError, match=f"body {bed[which == 'free'][0]} was erased"):
+        step()
+
+
+def test_an_erased_clump_ends_the_run_and_not_the_process(bed):
+    clump, members = O.bodies.appendClumped([scene.disk(8, 5, 0.3, 1.0), scene.disk(8.4, 5, 0.3, 1.0)])
+    O.run(5, True)
+    O.bodies.erase(clump, True)
+    with pytest.raises(RuntimeError, match="was erased"):
+        step()
+
+
+def test_after_sync_and_read_the_loop_goes_on_without_the_erased(bed):
+    loop = O.engines[0]
+    O.run(5, True)
+    loop.sync()
+    O.bodies.erase(bed[1][0])
+    loop.read()
+    O.run(5, True)
+    assert len(loop.ids) == 7
+
+
+def test_a_disk_off_the_plane_is_refused(bed):
+    O.bodies[bed[1][0]].state.pos = (0.1, 5, 0.3)
+    with pytest.raises(ValueError, match="one plane"):
+        step()
+
+
+def test_spheres_and_disks_together_are_refused_and_spheres_alone_roll_as_spheres(bed):
+    ball = O.bodies.append(utils.sphere((8, 5, 0), 0.5, color=(1, 1, 1)))
+    O.bodies[ball].state.blockedDOFs = "zXY"
+    with pytest.raises(ValueError, match=f"body {ball} differs"):
+        step()
+
+
+@pytest.mark.parametrize("rival", ["NewtonIntegrator", "GrainLoop"])
+def test_a_second_integrator_is_refused(bed, rival):
+    other = wrapper.NewtonIntegrator() if rival == "NewtonIntegrator" else GrainLoop()
+    O.engines = [other] + O.engines
+    with pytest.raises(RuntimeError, match=f"also holds {rival}"):
+        step()
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        dict(gravity=(0, 0, -1)),
+        dict(gravity=(math.nan, 0, 0)),
+        dict(skin=math.nan),
+        dict(normalStiffness=math.inf),
+        dict(largestOverlap=0),
+    ],
+)
+def test_numbers_out_of_range_are_refused(bad):
+    with pytest.raises(ValueError, match="GrainLoop"):
+        GrainLoop(**bad)
+
+
+def test_a_drive_behind_the_loop_is_refused(bed):
+    drive = OscillationDrive(body=bed[1][0], amplitude=1, period=1)
+    O.engines = O.engines + [drive]
+    with pytest.raises(RuntimeError, match="stands after GrainLoop"):
+        drive()
+
+
+def test_a_drive_on_a_clumps_member_is_refused(bed):
+    clump, members = O.bodies.appendClumped([scene.disk(8, 5, 0.3, 1.0), scene.disk(8.4, 5, 0.3, 1.0)])
+    drive = OscillationDrive(body=members[0], amplitude=1, period=1)
+    O.engines = [drive] + O.engines
+    with pytest.raises(RuntimeError, match=f"member of clump {clump}"):
+        drive()
