@@ -20,6 +20,13 @@ const char* const GrainLoop::documentation = "Collider, contact law and integrat
 											 "critical one and numbers out of range; a guard\n"
 											 "stops the run where grains overlap by more than `largestOverlap` of a radius.";
 
+namespace {
+
+constexpr std::size_t numbers_per_wall = 9;
+constexpr int no_body = -1;
+
+}  // namespace
+
 void GrainLoop::check() const
 {
 	require(law == "hertzHistory" || law == "hertzRestitution" || law == "springDashpot",
@@ -42,6 +49,12 @@ void GrainLoop::check() const
 	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius",
 		largestOverlap);
 	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
+	require(
+		targetAreaFraction >= 0 && targetAreaFraction < 1, "GrainLoop.targetAreaFraction must lie in [0, 1)", targetAreaFraction);
+	require(loads.size() % 3 == 0, "GrainLoop.loads must hold three numbers a body", loads.size());
+	require(wallSettings.size() % numbers_per_wall == 0, "GrainLoop.wallSettings must hold nine numbers a wall; use setWall",
+		wallSettings.size());
+	require(wallSprings.size() % 3 == 0, "GrainLoop.wallSprings must hold three numbers a contact", wallSprings.size());
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
 	contact_law();
 }
@@ -74,6 +87,8 @@ void GrainLoop::build()
 		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
 									"e.g. periods=(O.cell.size[0], 0, 0)");
 	require_alone();
+	s.walls = walls();
+	s.target_area_fraction = targetAreaFraction;
 	map_ = loop::read_yade(*scene, watched, s);
 	std::vector<loop::Spring> carried;
 	for (std::size_t k = 0; k + 2 < springs.size(); k += 3) {
@@ -85,6 +100,8 @@ void GrainLoop::build()
 	}
 	stepper_ = std::make_unique<loop::Stepper>(s);
 	stepper_->set_springs(carried);
+	stepper_->track_energy(trackEnergy);
+	bring_walls();
 	read_from_ = scene;
 }
 
@@ -96,6 +113,8 @@ loop::Stepper& GrainLoop::stepper()
 		throw std::runtime_error(
 			"GrainLoop: bodies were added to or removed from O.bodies; call sync() before and read() after such a change");
 	stepper_->guarding().largest_overlap = largestOverlap;
+	stepper_->target_area_fraction() = targetAreaFraction;
+	if (!stepper_->step_under_way()) stepper_->track_energy(trackEnergy);
 	if (stepper_->settings().dt != scene->dt) stepper_->set_time_step(scene->dt);
 	return *stepper_;
 }
@@ -196,6 +215,7 @@ void GrainLoop::sync()
 		state.angVel[2] = now.spin;
 		state.angMom[2] = now.spin * state.inertia[2];
 	}
+	keep_walls();
 	springs.clear();
 	for (const loop::Spring& s : stepper_->springs())
 		springs.insert(springs.end(), { Real(map_.grain_id[s.first]), Real(map_.grain_id[s.second]), s.slip });
@@ -207,7 +227,11 @@ void GrainLoop::begin_on_step()
 	write_bodies();
 }
 
-void GrainLoop::read() { stepper_.reset(); }
+void GrainLoop::read()
+{
+	keep_walls();
+	stepper_.reset();
+}
 
 /// The rigid body that a YADE body is, or is part of; a free disk that someone asks for becomes one.
 int GrainLoop::body_index(int id)
@@ -234,12 +258,13 @@ void GrainLoop::contacts_on(int id, std::vector<BodyContact>& contacts)
 	stepper_->touches_on(b, touches_);
 	for (const loop::Touch& t : touches_) {
 		const int member = map_.grain_id[t.member];
+		const int partner = t.partner < map_.grain_id.size() ? map_.grain_id[t.partner] : no_body;  // a wall
 		if (one_of_many && member != id) continue;
 		const Vector3r n(t.n_x, t.n_y, 0), along(-t.n_y, t.n_x, 0);
 		const loop::RigidBody& body = stepper_->bodies()[b];
 		const Vector3r lever =
 			one_of_many ? Vector3r(body.x + t.arm_x - centre[0], body.y + t.arm_y - centre[1], 0) : Vector3r(t.arm_x, t.arm_y, 0);
-		contacts.push_back({ member, map_.grain_id[t.partner], lever, -t.normal * n, t.friction * along, t.slipping });
+		contacts.push_back({ member, partner, lever, -t.normal * n, t.friction * along, t.slipping });
 	}
 }
 
@@ -287,6 +312,8 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 	stepper_ = std::move(restored);
 	map_ = map;
 	read_from_ = scene;
+	trackEnergy = stepper_->energy_ledger() != nullptr;
+	targetAreaFraction = stepper_->target_area_fraction();
 	write_bodies();
 	sync();
 }

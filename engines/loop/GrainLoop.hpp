@@ -37,6 +37,16 @@ public:
 			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
 		visit(
 			"syncEvery", &Self::syncEvery, "write all bodies to YADE every so many steps; 0: at the end of O.run and by sync()");
+		visit("targetAreaFraction", &Self::targetAreaFraction,
+			"area fraction at which walls halt [-]: areas of disks over the box between walls or periodic sides; 0: they never "
+			"do");
+		visit("trackEnergy", &Self::trackEnergy,
+			"keep the energy ledger that `energy` tells; it begins when switched on, and anew with read(); a step then takes "
+			"some eight times as long");
+		visit("loads", &Self::loads, "id, F_x, F_y [N] of constant forces on bodies, as setLoad leaves them");
+		visit("wallSettings", &Self::wallSettings, "nine numbers a wall, as setWall leaves them, at the last sync, for O.save");
+		visit("wallSprings", &Self::wallSprings,
+			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
 		visit("springs", &Self::springs, "id, id, tangential spring [m] of the contacts at the last sync, for O.save");
 	}
 	void check() const;
@@ -53,6 +63,12 @@ public:
 	void read();
 	void save_checkpoint(const std::string& path);
 	void restore_checkpoint(const std::string& path);
+	/// Adds a flat wall or changes the one on its side.
+	void set_wall(const loop::Wall& wall);
+	void remove_wall(loop::Side side);
+	std::vector<loop::Wall> walls() const;
+	/// A constant force on a body's free directions, until it is set anew.
+	void set_load(int body, const Vector3r& force);
 	/// The running loop; made from YADE's bodies if there is none yet.
 	loop::Stepper& stepper();
 	const loop::YadeBodies& bodies() const { return map_; }
@@ -64,7 +80,9 @@ public:
 	int threads = 1;
 	long syncEvery = 0;
 	std::vector<int> watched;
-	std::vector<Real> springs;
+	std::vector<Real> springs, loads, wallSettings, wallSprings;
+	Real targetAreaFraction = 0;
+	bool trackEnergy = false;
 
 private:
 	std::unique_ptr<loop::Stepper> stepper_;
@@ -77,6 +95,9 @@ private:
 	loop::Scene settings() const;
 	void build();
 	void follow_bodies();
+	void keep_walls();
+	void bring_walls();
+	void bring_loads();
 	void write_bodies();
 	void release_what_moves();
 	bool last_step_of_run() const;

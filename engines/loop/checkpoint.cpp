@@ -93,10 +93,11 @@ void visit_scene(Visitor&& visit, SceneType& s)
 {
 	visit(s.grains);
 	visit(s.bodies);
+	visit(s.walls);
 	visit(s.box);
 	visit(s.law);
 	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision),
-		visit(s.spin_response), visit(s.skin);
+		visit(s.spin_response), visit(s.skin), visit(s.target_area_fraction);
 }
 
 }  // namespace
@@ -107,6 +108,7 @@ void Stepper::visit_state(Visitor&& visit, Self& s)
 	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
 	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.gap);
 	visit(s.moved_since_search), visit(s.moved_since_selection), visit(s.fastest), visit(s.guards);
+	visit(s.wall_touches), visit(s.moved_near_walls);
 }
 
 void Stepper::save(const std::string& path, const std::string& companion)
@@ -116,6 +118,8 @@ void Stepper::save(const std::string& path, const std::string& companion)
 	Packer pack;
 	visit_scene(pack, scene);
 	visit_state(pack, *this);
+	pack(bool(energy_ledger()));
+	if (energy_ledger()) energy_ledger()->visit(pack);
 	pack(companion);
 	write_checkpoint(path, pack.bytes);
 }
@@ -129,6 +133,10 @@ std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, 
 	scene.threads = threads;
 	auto stepper = std::make_unique<Stepper>(scene);
 	visit_state(unpack, *stepper);
+	bool tracked = false;
+	unpack(tracked);
+	stepper->track_energy(tracked);
+	if (tracked) stepper->energy_ledger()->visit(unpack);
 	std::string rest;
 	unpack(rest);
 	if (companion) *companion = rest;

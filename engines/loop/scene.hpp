@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "engines/loop/kernel.hpp"
+#include "engines/loop/wall.hpp"
 
 namespace graindrive::loop {
 
@@ -28,6 +30,7 @@ struct RigidBody {
 	bool responds_x = false, responds_y = false, responds_spin = false;  ///< to contacts and gravity
 	bool frozen = false;  ///< will never move: costs nothing, knows no forces, and meets no other frozen body
 	double force_x = 0, force_y = 0, torque = 0;  ///< by contacts, in the last step [N], [N m]
+	double load_x = 0, load_y = 0;                ///< a constant force on what responds [N]
 };
 
 struct Box {
@@ -38,6 +41,7 @@ struct Box {
 struct Scene {
 	std::vector<Grain> grains;
 	std::vector<RigidBody> bodies;
+	std::vector<Wall> walls;  ///< flat, at most one on each side
 	Box box;
 	ContactLaw law;
 	bool friction = true;                 ///< off: no tangential force and no history
@@ -46,8 +50,17 @@ struct Scene {
 	double dt = 0;                        ///< time step [s]
 	Precision precision = Precision::double_;
 	int threads = 1;
-	double spin_response = 2;  ///< m R^2 / I of free grains: 2 for disks
-	double skin = 0;           ///< how far beyond touching neighbours are listed [m]; 0 lets the loop choose
+	double spin_response = 2;         ///< m R^2 / I of free grains: 2 for disks
+	double skin = 0;                  ///< how far beyond touching neighbours are listed [m]; 0 lets the loop choose
+	double target_area_fraction = 0;  ///< walls halt where disks cover so much of the box; 0: they never do
 };
+
+const char* name_of(Side side);
+/// @throws std::invalid_argument listing the sides
+Side side_named(const std::string& name);
+/// What a pressure on the wall acts on: the box's extent along it [m], 0 where nothing bounds it.
+double wall_length(const Scene& scene, const Wall& wall);
+/// Sum of the areas of disks that are not frozen, over the area between walls or periodic sides. Overlapping beads of a clump count twice.
+double area_fraction(const Scene& scene);
 
 }  // namespace graindrive::loop

@@ -21,6 +21,7 @@ Stepper::Stepper(const Scene& given)
 	  team(given.threads)
 {
 	check_scene(scene);
+	check_walls(scene);
 	arrange_rows();
 	data.dt = data.kick = data.drift = scene.dt;
 	data.gravity_x = scene.gravity_x;
@@ -80,13 +81,23 @@ void Stepper::step(long n)
 
 void Stepper::set_time_step(double dt)
 {
+	if (books)
+		throw std::invalid_argument("the time step must stay while energy is tracked; switch trackEnergy off and on again");
 	Scene changed = scene;
 	changed.dt = dt;
 	check_scene(changed);
+	check_walls(changed);
 	scene.dt = data.dt = data.kick = data.drift = dt;
 }
 
 void Stepper::set_springs(const std::vector<Spring>& springs) { given_springs = springs; }
+
+void Stepper::forget_springs()
+{
+	for (Candidate& pair : pairs.candidates) pair.slip = 0;
+	pairs.put_back_slips();
+	for (WallTouch& touch : wall_touches) touch.slip = 0;
+}
 
 void Stepper::compute_body_forces()
 {
@@ -138,7 +149,13 @@ void Stepper::prepare()
 {
 	try {
 		if (moved_since_selection > gap || selections == 0) select();
-		if (guards.every > 0 && steps % guards.every == 0) check_pairs();
+		if (!scene.walls.empty()) list_wall_touches();
+		if (guards.every > 0 && steps % guards.every == 0) {
+			check_pairs();
+			check_walls_while_running();
+		}
+		if (!scene.walls.empty()) compute_wall_forces();
+		if (books) remember_for_books();
 	} catch (...) {
 		failure = std::current_exception();
 	}
@@ -156,6 +173,8 @@ void Stepper::finish()
 		const RigidBody& body = scene.bodies[b];
 		fastest = std::max(fastest, std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b]);
 	}
+	if (!scene.walls.empty()) move_walls();
+	if (books) book_energy();
 	const double approach = 2 * fastest * data.drift;
 	moved_since_selection += approach;
 	moved_since_search += approach;

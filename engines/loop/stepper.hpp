@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "engines/loop/energy_ledger.hpp"
 #include "engines/loop/pair_list.hpp"
 #include "engines/loop/thread_team.hpp"
 
@@ -52,6 +53,7 @@ public:
 	/// Computes the contacts of bodies at the present positions, before anything moves: `bodies()` then hold their forces and
 	/// `touches_on` tells their contacts. The next step goes on from there, with velocities of bodies as they are then.
 	void compute_body_forces();
+	bool step_under_way() const { return body_forces_known; }
 
 	/// For velocities given on the step, not half a step behind: takes the first half kick (springs are left as they are).
 	void begin_on_step();
@@ -64,6 +66,7 @@ public:
 	long steps_done() const { return steps; }
 	double time() const { return steps * scene.dt; }
 	const Scene& settings() const { return scene; }
+	double& target_area_fraction() { return scene.target_area_fraction; }
 	std::vector<RigidBody>& bodies() { return scene.bodies; }
 
 	std::size_t size() const { return scene.grains.size(); }
@@ -77,8 +80,21 @@ public:
 
 	std::vector<Spring> springs() const;
 	void set_springs(const std::vector<Spring>& springs);  ///< before the first step
+	void forget_springs();                                 ///< all contacts begin anew
 	/// @throws std::invalid_argument where it exceeds the critical step
 	void set_time_step(double dt);
+
+	/// Adds the wall, or changes the one on its side. @throws std::invalid_argument naming the wall and the rule
+	void set_wall(const Wall& wall);
+	void remove_wall(Side side);
+	void set_wall_springs(const std::vector<WallTouch>& springs);  ///< before the first step
+	const std::vector<WallTouch>& wall_springs() const { return wall_touches; }
+	std::vector<Contact> wall_contacts() const;  ///< `second` is the wall, n is outward, and forces act on the grain
+
+	/// Opens or closes the energy ledger; it costs a plain pass over all contacts at every step.
+	void track_energy(bool on);
+	const EnergyLedger* energy_ledger() const;  ///< null where energy is not tracked
+	EnergyLedger* energy_ledger();
 
 	double kinetic_energy() const;    ///< of free grains, translation and rotation, at the half step [J]
 	double kinetic_energy_on_step();  ///< the same with the velocities of the whole step [J]
@@ -122,6 +138,8 @@ private:
 
 	void arrange_rows();
 	void place_members(std::size_t body);
+	std::vector<WallTouch> wall_touches;  // near walls: by wall, then by grain
+	double moved_near_walls = std::numeric_limits<double>::infinity();
 	std::vector<Spring> given_springs;  // until the first search
 	bool body_forces_known = false;
 	Guards guards;
@@ -142,6 +160,37 @@ private:
 	void collect_forces(std::size_t body);
 	double farthest_moved() const;
 	double slipping_bound() const;
+
+	struct Books {
+		EnergyLedger ledger;
+		AlignedVector<GrainRow> rows;  // as they were when the forces of the step were computed
+		std::vector<RigidBody> bodies;
+		std::vector<Wall> walls;
+		std::vector<double> slips;  // by candidate
+		std::vector<MetContact> met;
+	};
+	std::unique_ptr<Books> books;  // of the energy ledger
+	struct Motion {
+		double vx, vy, surface_speed;
+	};
+	void remember_for_books();
+	Motion motion_after(std::uint32_t row) const;
+	void meet_pairs();
+	void meet_walls(LedgerMotion& motion);
+	void move_in_books(LedgerMotion& motion);
+	void book_energy();
+
+	struct WallMeeting {
+		double n_x, n_y;
+		laws::Kinematics<double, double> contact;
+	};
+	WallMeeting meeting(const WallTouch& touch) const;
+	void list_wall_touches();
+	void compute_wall_forces();
+	void add_wall_forces(std::size_t body);
+	void move_walls();
+	void check_walls_while_running() const;
+	void append_wall_touches(std::size_t body, std::vector<Touch>& touches) const;
 };
 
 }  // namespace graindrive::loop

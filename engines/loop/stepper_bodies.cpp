@@ -24,13 +24,14 @@ void Stepper::collect_forces(std::size_t b)
 		body.force_y += y;
 		body.torque += arm_x * y - arm_y * x + row.radius * friction;
 	}
+	if (!wall_touches.empty()) add_wall_forces(b);
 }
 
 void Stepper::move_body(std::size_t b)
 {
 	RigidBody& body = scene.bodies[b];
-	if (body.responds_x) body.vx += (body.force_x / body.mass + data.gravity_x) * data.kick;
-	if (body.responds_y) body.vy += (body.force_y / body.mass + data.gravity_y) * data.kick;
+	if (body.responds_x) body.vx += ((body.force_x + body.load_x) / body.mass + data.gravity_x) * data.kick;
+	if (body.responds_y) body.vy += ((body.force_y + body.load_y) / body.mass + data.gravity_y) * data.kick;
 	if (body.responds_spin) body.spin += body.torque / body.inertia * data.kick;
 	body.x += body.vx * data.drift;
 	body.y += body.vy * data.drift;

@@ -96,6 +96,7 @@ void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 				n[0], n[1], f.normal, f.friction, std::abs(f.friction) >= bound * std::abs(f.normal) });
 		}
 	}
+	if (!wall_touches.empty()) append_wall_touches(b, touches);
 }
 
 double Stepper::kinetic_energy() const
@@ -111,12 +112,17 @@ double Stepper::kinetic_energy() const
 
 double Stepper::kinetic_energy_on_step()
 {
-	if (selections == 0) select();
+	if (selections == 0 || moved_since_selection > gap) select();  // the trial step must not sort rows
 	pairs.keep_slips();
 	const AlignedVector<GrainRow> before = rows;
+	std::unique_ptr<Books> aside(nullptr);
+	aside.swap(books);  // a trial step is no business
 	const auto bodies_before = scene.bodies;
+	const auto walls_before = scene.walls;
+	const auto touches_before = wall_touches;
 	const long steps_before = steps;
-	const double moved = moved_since_selection, moved_search = moved_since_search, fastest_before = fastest;
+	const double moved = moved_since_selection, moved_search = moved_since_search, fastest_before = fastest,
+				 moved_walls = moved_near_walls;
 	data.kick = 0.5 * scene.dt;
 	data.drift = 0;
 	step(1);
@@ -125,16 +131,21 @@ double Stepper::kinetic_energy_on_step()
 	rows = before;
 	data.rows = rows.data();
 	scene.bodies = bodies_before;
+	scene.walls = walls_before;
+	wall_touches = touches_before;
 	steps = steps_before;
 	moved_since_selection = moved;
 	moved_since_search = moved_search;
+	moved_near_walls = moved_walls;
 	fastest = fastest_before;
 	pairs.put_back_slips();
+	books.swap(aside);
 	return energy;
 }
 
 void Stepper::begin_on_step()
 {
+	if (books) throw std::runtime_error("begin on the step first, then track energy");
 	data.dt = 0;
 	data.kick = 0.5 * scene.dt;
 	step(1);

@@ -1,0 +1,115 @@
+/// The energy ledger: where the energy of a scene is, where it came from and where it went, at the steps of the leapfrog.
+///
+/// At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
+///
+///   K_n = sum 1/2 m v-.v+,   K_n - K_{n-1} = sum 1/2 F_{n-1}.v dt + 1/2 F_n.v dt,  v = v_{n-1/2} that of the interval between them
+///
+/// whose sum over steps is the drives' sum F.(v- + v+)/2 dt. Every force is split into its parts and every part's power booked so.
+///   elastic        of the closed form: Hertz U_n = 2/5 K_n sqrt(R_eff) delta^{5/2}, linear 1/2 k_n delta^2; U_t = 1/2 k_t s^2
+///   damping        by the dashpots' forces, at the velocities that they were computed with
+///                  (the tangential one while the contact sticks)
+///   friction       the work of the tangential force where Coulomb's bound is active, less what the spring takes up, (k_t s)_mean Delta s.
+///                  A shortened spring and its dashpot together are the bound, so their shares in it mean nothing
+///   stiffening     1/2 s_{n-1} s_n (k_n - k_{n-1}): Hertz's k_t grows with delta, so a stretched spring gains and loses energy with the
+///                  load although no force does work. The law is not conservative in this; the term can have either sign.
+///   opening        1/2 k_t s^2 of contacts that part while their spring is stretched
+///   work           of driven degrees of freedom, walls and loads on the grains
+///   time step      an elastic force's work in steps is not exactly its closed form, most of all in the steps in which a contact begins
+///                  and ends; that difference, and a contact's turning between two steps, contact by contact: what leapfrog itself adds
+/// Nothing is a remainder of the whole: forces are computed anew from the motion, and `residual` is what all entries together fail to explain. It is
+/// round-off unless a force, a spring or a grain went astray; the accuracy of the time step stands in its own entry.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engines/loop/kernel.hpp"
+
+namespace graindrive::loop {
+
+/// A part of a work that belongs to the interval before the step, and one that belongs to the next.
+struct Halves {
+	double before = 0, after = 0;
+};
+
+/// A contact at a step: with the velocities before and after it.
+struct MetContact {
+	std::uint64_t key;  ///< of the pair
+	double overlap, effective_radius, effective_mass;
+	double v_n_before, v_n_after, v_t_before, v_t_after;  ///< at the step's normal
+	double slip_before;                                   ///< tangential spring that the step began with
+};
+
+/// All that is no contact.
+struct LedgerMotion {
+	double translation = 0, rotation = 0, potential = 0;  ///< [J]
+	Halves falling;                                       ///< change of potential along periodic axes
+	Halves walls, loads;                                  ///< work on the grains
+	std::vector<Halves> bodies;
+};
+
+/// The entries, in J, since the ledger was opened; energies are those of the last step.
+struct Energies {
+	double translation = 0, rotation = 0, elastic_normal = 0, elastic_tangential = 0, potential = 0;
+	double normal_damping = 0, tangential_damping = 0, friction = 0, opening = 0;  ///< dissipated
+	double stiffening = 0;                                                         ///< given to springs by the load
+	double work_of_bodies = 0, work_of_walls = 0, work_of_loads = 0;
+	double initial = 0;    ///< sum of the energies when the ledger was opened
+	double turnover = 0;   ///< sum of the |changes| of all entries
+	double time_step = 0;  ///< given by the leapfrog itself
+
+	double stored() const { return translation + rotation + elastic_normal + elastic_tangential + potential; }
+	double residual() const
+	{
+		return stored() + normal_damping + tangential_damping + friction + opening - stiffening - work_of_bodies - work_of_walls -
+		       work_of_loads - time_step - initial;
+	}
+};
+
+class EnergyLedger {
+public:
+	EnergyLedger(const ContactLaw& law, bool friction, double dt) : law(law), with_friction(friction), dt(dt) {}
+
+	/// Books one step. Sorts the contacts by key, so that sums do not depend on where they lie.
+	void book(std::vector<MetContact>& contacts, const LedgerMotion& motion);
+
+	/// From here on the ledger explains the motion by another law; for tests of the ledger itself.
+	void suppose(const ContactLaw& other) { law = other; }
+
+	const Energies& energies() const { return now; }
+	const std::vector<double>& work_by_body() const { return body_work; }
+	long steps_booked() const { return steps; }
+
+	template <class Visitor>
+	void visit(Visitor&& visit)
+	{
+		visit(law), visit(with_friction), visit(dt), visit(steps), visit(now), visit(past), visit(body_work), visit(pending),
+			visit(pending_bodies), visit(fallen);
+	}
+
+private:
+	/// What the next step must know of a contact.
+	struct Past {
+		std::uint64_t key;
+		double spring_force, stiffness, slip;  // T, k_t, s
+		double moved_after, elastic_after;     // v_t+ dt; half of the normal spring's work in the coming interval
+	};
+	struct Pending {
+		double normal_damping = 0, tangential_damping = 0, falling = 0, walls = 0, loads = 0;
+	};
+
+	ContactLaw law;
+	bool with_friction;
+	double dt;
+	long steps = 0;
+	Energies now;
+	std::vector<Past> past;
+	std::vector<double> body_work, pending_bodies;
+	Pending pending;
+	double fallen = 0;
+
+	struct Sums;
+	Past meet(const MetContact& contact, const Past& before, Sums& sums) const;
+	void part(const Past& before, Sums& sums) const;
+};
+
+}  // namespace graindrive::loop

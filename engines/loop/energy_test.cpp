@@ -1,0 +1,234 @@
+/// The energy ledger closes, and does not where something goes astray.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "engines/base/complaint.hpp"
+#include "engines/loop/test_scenes.hpp"
+
+using namespace graindrive;
+using namespace graindrive::loop;
+using namespace graindrive::loop::test;
+
+namespace {
+
+/// The wiggle paper's law and time step: a settled bed in a box of frozen disks, with a clump that is shaken in x and free in y.
+Scene wiggle_bed()
+{
+	Scene scene;
+	scene.law = laws::HertzHistory<Real>{ 2e6, 2.46e6, 2500, 2500, 0.1 };
+	scene.dt = 1e-4;
+	scene.gravity_y = -1;
+	scene.box = { 0, 16, 0, 0, true, false };
+	scene.bodies.resize(2);
+	scene.bodies[0].frozen = true;
+	RigidBody& clump = scene.bodies[1];
+	clump.x = 8, clump.y = 6, clump.mass = 8, clump.inertia = 8;
+	clump.responds_y = true;
+	for (int k = 0; k < 16; ++k) scene.grains.push_back(disk(k + 0.5, 0, 0.5, 0)), scene.grains.back().mass = HUGE_VAL;
+	for (int k = 0; k < 12; ++k) {
+		scene.grains.push_back(disk(8 + std::cos(k * pi / 6), 6 + std::sin(k * pi / 6), 0.25, 1));
+		scene.grains.back().mass = clump.mass;
+	}
+	const Scene sizes = crowd(16, 7, 0.1);
+	for (std::size_t i = 0; i < 16 * 12; ++i) {
+		Grain g = sizes.grains[i];
+		g.y = 0.5 + 1.05 * g.y;
+		if (std::hypot(g.x - 8, g.y - 6) > 1.8) scene.grains.push_back(g);
+	}
+	return scene;
+}
+
+void shake(Stepper& loop, long steps)
+{
+	const double amplitude = 0.5, period = 1, dt = loop.settings().dt;
+	for (long k = 0; k < steps; ++k) {
+		const double t = loop.time();
+		loop.compute_body_forces();
+		loop.bodies()[1].vx = amplitude * (std::sin(2 * pi * (t + dt) / period) - std::sin(2 * pi * t / period)) / dt;
+		loop.step();
+	}
+}
+
+double closure(const Stepper& loop)
+{
+	const Energies& e = loop.energy_ledger()->energies();
+	return std::abs(e.residual()) / e.turnover;
+}
+
+double time_step_share(const Stepper& loop)
+{
+	const Energies& e = loop.energy_ledger()->energies();
+	return std::abs(e.time_step) / e.turnover;
+}
+
+// Sums of 1e4 steps over 1e3 entries, each rounded to 1e-16 of it.
+constexpr double round_off = 1e-12;
+
+/// A bed between walls of which one slides, one is pressed down, shaken by a clump that is free to fall.
+Scene walled_bed(const ContactLaw& law)
+{
+	Scene scene = crowd(12, 5, 0.5);
+	scene.law = law;
+	scene.gravity_y = -1, scene.gravity_x = 0.2;
+	scene.box.periodic_y = false;
+	Wall floor, lid;
+	floor.position = 0, floor.slide = 0.3;
+	lid.side = Side::y_high, lid.position = 12;
+	lid.pressed = true, lid.pressure = 2, lid.mass = 5, lid.damping = 10;
+	scene.walls = { floor, lid };
+	RigidBody clump;
+	clump.x = 6, clump.y = 6, clump.mass = 3, clump.inertia = 0.5, clump.load_y = -3;
+	clump.responds_x = clump.responds_y = clump.responds_spin = true;
+	scene.bodies = { clump };
+	for (const std::size_t i : { 77u, 78u }) scene.grains[i].body = 0, scene.grains[i].mass = clump.mass;
+	return scene;
+}
+
+}  // namespace
+
+TEST(Energy, closes_at_the_wiggle_papers_settings)
+{
+	Stepper loop(wiggle_bed());
+	shake(loop, 10000);
+	loop.track_energy(true);
+	shake(loop, 20000);
+	const Energies& e = loop.energy_ledger()->energies();
+	EXPECT_GT(e.work_of_bodies, 10);
+	EXPECT_GT(e.friction, 10);
+	EXPECT_GT(e.normal_damping, 10);
+	EXPECT_GT(e.tangential_damping, 0);
+	EXPECT_GT(e.opening, 0);
+	EXPECT_LT(closure(loop), round_off);
+	// What leapfrog itself adds stands in its own entry. Contacts that begin within a step weigh most in it.
+	EXPECT_LT(time_step_share(loop), 1e-4);
+	RecordProperty("time_step_share", std::to_string(time_step_share(loop)));
+	RecordProperty("closure", std::to_string(closure(loop) * 1e15) + "e-15");
+}
+
+TEST(Energy, what_leapfrog_adds_shrinks_with_the_square_of_the_time_step)
+{
+	const auto share = [](double dt) {
+		Scene scene = wiggle_bed();
+		scene.dt = dt;
+		Stepper loop(scene);
+		shake(loop, std::lround(1 / dt));
+		loop.track_energy(true);
+		shake(loop, std::lround(2 / dt));
+		EXPECT_LT(closure(loop), round_off);
+		return time_step_share(loop);
+	};
+	const double coarse = share(1e-4), fine = share(0.25e-4);
+	EXPECT_GT(coarse / fine, 10) << coarse << " " << fine;  // 16, of runs whose collisions differ
+	RecordProperty("coarse", std::to_string(coarse * 1e6) + "e-6");
+	RecordProperty("fine", std::to_string(fine * 1e6) + "e-6");
+}
+
+TEST(Energy, closes_with_every_law_with_walls_loads_and_gravity_along_a_period)
+{
+	for (const ContactLaw& law : { ContactLaw(hertz(0.3, 500)), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)),
+			 ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
+		Stepper loop(walled_bed(law));
+		loop.track_energy(true);
+		loop.step(10000);
+		const Energies& e = loop.energy_ledger()->energies();
+		EXPECT_GT(std::abs(e.work_of_walls), 0.1);
+		EXPECT_GT(std::abs(e.work_of_loads), 0.01);
+		EXPECT_LT(closure(loop), round_off) << "law " << law.index();
+	}
+}
+
+TEST(Energy, walls_give_what_their_own_motion_took)
+{
+	// Work of a pressed lid on the grains = work of the pressure less its own kinetic energy and its dashpot's heat, in the lid's own leapfrog.
+	Scene scene = walled_bed(hertz(0.3, 500));
+	scene.walls[0].slide = 0;
+	scene.walls[1].damping = 0;
+	Stepper loop(scene);
+	loop.track_energy(true);
+	loop.step(1);
+	const auto lid = [&] { return loop.settings().walls[1]; };
+	const double start = lid().position;
+	loop.step(10000);
+	const double pushed = 2 * 12 * (start - lid().position), kinetic = 0.5 * 5 * lid().velocity * lid().velocity;
+	// The lid is at half steps and the ledger at steps: half a step's push, 24 v dt / 2, and the first step's.
+	EXPECT_NEAR(loop.energy_ledger()->energies().work_of_walls, pushed - kinetic, 3 * 24 * 1e-4);
+}
+
+TEST(Energy, a_lost_spring_a_secret_push_and_a_wrong_law_do_not_close)
+{
+	const auto run = [](auto&& meddle) {
+		Stepper loop(wiggle_bed());
+		shake(loop, 10000);
+		loop.track_energy(true);
+		shake(loop, 5000);
+		meddle(loop);
+		shake(loop, 5000);
+		return closure(loop);
+	};
+	EXPECT_LT(run([](Stepper&) {}), round_off);
+	EXPECT_GT(run([](Stepper& loop) { loop.bodies()[1].vy += 0.01; }), 1e-6);
+	EXPECT_GT(run([](Stepper& loop) { loop.forget_springs(); }), 1e-6);
+	using Law = laws::HertzHistory<Real>;
+	for (Real Law::*constant : { &Law::k_n, &Law::k_t, &Law::gamma_n, &Law::gamma_t, &Law::mu }) {
+		Law off = std::get<Law>(wiggle_bed().law);
+		off.*constant *= 1.001;
+		EXPECT_GT(run([&](Stepper& loop) { loop.energy_ledger()->suppose(off); }), 1e-6);
+	}
+}
+
+TEST(Energy, an_elastic_gas_keeps_its_energy_to_second_order_in_dt)
+{
+	const auto drift = [](double dt) {
+		Scene scene = crowd(10, 7, 0.5);
+		scene.law = hertz(0, 0);
+		scene.friction = false;
+		scene.dt = dt;
+		for (Grain& g : scene.grains) g.radius *= 0.97, g.mass *= 0.97 * 0.97;
+		Stepper loop(scene);
+		loop.track_energy(true);
+		double largest = 0;
+		for (int k = 0; k < 200; ++k) {
+			loop.step(long(0.005 / dt + 0.5));
+			const Energies& e = loop.energy_ledger()->energies();
+			largest = std::max(largest, std::abs(e.stored() - e.initial) / e.initial);
+			if (e.turnover > 0) {
+				EXPECT_LT(closure(loop), round_off) << e.stored() << " " << e.turnover << " " << k;
+			}
+		}
+		return largest;
+	};
+	const double coarse = drift(1e-4), fine = drift(0.5e-4);
+	EXPECT_LT(coarse, 1e-4);
+	EXPECT_NEAR(coarse / fine, 4, 1.5);  // other collisions after a while: the two runs are chaotic
+}
+
+TEST(Energy, the_ledger_does_not_touch_the_motion_and_has_the_same_bits_on_threads_and_after_a_checkpoint)
+{
+	const std::string path = ::testing::TempDir() + "graindrive_energy_test";
+	Scene scene = walled_bed(hertz(0.3, 500));
+	Stepper plain(scene), one(scene);
+	one.track_energy(true);
+	plain.step(3000), one.step(3000);
+	EXPECT_TRUE(same_bits(plain, one));
+	scene.threads = 2;
+	Stepper two(scene);
+	two.track_energy(true);
+	two.step(1500);
+	two.save(path);
+	const auto restored = Stepper::restore(path);
+	two.step(1500), restored->step(1500);
+	const Energies a = one.energy_ledger()->energies(), b = two.energy_ledger()->energies(),
+				   c = restored->energy_ledger()->energies();
+	EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+	EXPECT_EQ(std::memcmp(&a, &c, sizeof a), 0);
+	std::remove(path.c_str());
+}
+
+TEST(Energy, the_time_step_must_stay)
+{
+	Stepper loop(wiggle_bed());
+	loop.track_energy(true);
+	EXPECT_TRUE(mentions(complaint([&] { loop.set_time_step(5e-5); }), "time step must stay"));
+}

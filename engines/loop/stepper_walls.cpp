@@ -1,0 +1,291 @@
+/// Flat walls in a step: forces before anything moves, given to the grains after the sweep. Few grains touch a wall, so one thread does it.
+///
+/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "engines/loop/guards.hpp"
+#include "engines/loop/stepper.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double reach_of_list = 0.2;  // how far from a wall grains are listed [d]
+constexpr const char* side_names[] = { "x_low", "x_high", "y_low", "y_high" };
+
+void require(bool holds, const Wall& wall, const char* rule, double got)
+{
+	if (holds) return;
+	std::ostringstream message;
+	message << "wall " << name_of(wall.side) << ": " << rule << ", got " << got;
+	throw std::invalid_argument(message.str());
+}
+
+const Wall* opposite(const Scene& scene, const Wall& wall)
+{
+	for (const Wall& other : scene.walls)
+		if (other.side != wall.side && other.across_x() == wall.across_x()) return &other;
+	return nullptr;
+}
+
+/// Length of the box along an axis, 0 where nothing bounds it.
+double extent(const Scene& scene, bool along_x)
+{
+	const Box& box = scene.box;
+	if (along_x ? box.periodic_x : box.periodic_y) return along_x ? box.x_high - box.x_low : box.y_high - box.y_low;
+	const Wall *low = nullptr, *high = nullptr;
+	for (const Wall& wall : scene.walls)
+		if (wall.across_x() == along_x) (wall.outward() < 0 ? low : high) = &wall;
+	return low && high ? high->position - low->position : 0;
+}
+
+/// To the bound of its own pair of grains: a wall is to a grain what a grain of the same size and mass is to one of twice both.
+double critical_step_at_walls(Scene scene)
+{
+	scene.walls.clear();
+	for (Grain& g : scene.grains) g.radius *= 2, g.mass *= 2;
+	return critical_time_step(scene, 0.05);
+}
+
+}  // namespace
+
+const char* name_of(Side side) { return side_names[static_cast<int>(side)]; }
+
+Side side_named(const std::string& name)
+{
+	for (int s = 0; s < 4; ++s)
+		if (name == side_names[s]) return static_cast<Side>(s);
+	throw std::invalid_argument("a wall's side must be x_low, x_high, y_low or y_high, got " + name);
+}
+
+double wall_length(const Scene& scene, const Wall& wall) { return extent(scene, !wall.across_x()); }
+
+void check_walls(const Scene& scene)
+{
+	for (const Wall& wall : scene.walls) {
+		require(std::isfinite(wall.position), wall, "position must be finite [m]", wall.position);
+		require(std::isfinite(wall.velocity) && std::isfinite(wall.slide), wall, "velocity and slide must be finite [m/s]",
+			wall.velocity + wall.slide);
+		require(!(wall.across_x() ? scene.box.periodic_x : scene.box.periodic_y), wall,
+			"the box must not be periodic across it; period [m]", extent(scene, wall.across_x()));
+		const Wall* facing = opposite(scene, wall);
+		require(!facing || (facing->position - wall.position) * wall.outward() < 0, wall,
+			"must lie on its side of the one that faces it, at which position [m]", wall.position);
+		if (!wall.pressed) continue;
+		require(std::isfinite(wall.pressure), wall, "pressure must be finite [N/m]", wall.pressure);
+		require(wall.mass > 0 && std::isfinite(wall.mass), wall, "a wall under pressure needs a positive mass [kg]", wall.mass);
+		require(wall.damping >= 0, wall, "damping must not be negative [kg/s]", wall.damping);
+		require(wall.speed_limit > 0, wall, "speedLimit must be positive [m/s]", wall.speed_limit);
+		require(wall_length(scene, wall) > 0, wall,
+			"a pressure needs a length that it acts on: a periodic box or two walls along the wall; length [m]",
+			wall_length(scene, wall));
+	}
+	if (scene.walls.empty()) return;
+	const double critical = critical_step_at_walls(scene);
+	if (scene.dt > critical) {
+		std::ostringstream message;
+		message << "time step must not exceed the critical one of a grain at a wall, " << critical << ", got " << scene.dt
+				<< "; lower it or take softer grains";
+		throw std::invalid_argument(message.str());
+	}
+}
+
+double area_fraction(const Scene& scene)
+{
+	double area = 0;
+	for (const Grain& g : scene.grains)
+		if (g.body == free_grain || !scene.bodies[g.body].frozen) area += pi * g.radius * g.radius;
+	return area / (extent(scene, true) * extent(scene, false));
+}
+
+void Stepper::set_wall(const Wall& wall)
+{
+	Scene changed = scene;
+	const auto same_side = [&](const Wall& other) { return other.side == wall.side; };
+	const auto at = std::find_if(changed.walls.begin(), changed.walls.end(), same_side);
+	if (at == changed.walls.end())
+		changed.walls.push_back(wall);
+	else
+		*at = wall;
+	check_walls(changed);
+	scene.walls = changed.walls;
+	moved_near_walls = HUGE_VAL;
+}
+
+void Stepper::remove_wall(Side side)
+{
+	for (std::uint32_t w = 0; w < scene.walls.size(); ++w) {
+		if (scene.walls[w].side != side) continue;
+		scene.walls.erase(scene.walls.begin() + w);
+		std::vector<WallTouch> kept;
+		for (WallTouch touch : wall_touches) {
+			if (touch.wall == w) continue;
+			touch.wall -= touch.wall > w;
+			kept.push_back(touch);
+		}
+		wall_touches.swap(kept);
+		return;
+	}
+}
+
+void Stepper::set_wall_springs(const std::vector<WallTouch>& springs)
+{
+	wall_touches = springs;
+	std::sort(wall_touches.begin(), wall_touches.end(),
+		[](const WallTouch& a, const WallTouch& b) { return a.wall != b.wall ? a.wall < b.wall : a.grain < b.grain; });
+}
+
+/// Lists grains near walls anew once something may have come from beyond the list to a wall. The order is that of grains, wherever they lie.
+void Stepper::list_wall_touches()
+{
+	const double reach = reach_of_list * typical_diameter;
+	if (moved_near_walls <= reach) return;
+	std::vector<WallTouch> listed;
+	auto known = wall_touches.begin();
+	for (std::uint32_t w = 0; w < scene.walls.size(); ++w) {
+		const Wall& wall = scene.walls[w];
+		for (std::uint32_t g = 0; g < n_grains; ++g) {
+			while (known != wall_touches.end() && (known->wall < w || (known->wall == w && known->grain < g))) ++known;
+			if (scene.grains[g].body != free_grain && body_fixed[scene.grains[g].body]) continue;
+			const GrainRow& row = rows[row_of[g]];
+			const double depth = row.radius + wall.outward() * ((wall.across_x() ? row.x : row.y) - wall.position);
+			if (depth < -reach) continue;
+			const bool seen = known != wall_touches.end() && known->wall == w && known->grain == g;
+			listed.push_back({ w, g, seen ? known->slip : 0 });
+		}
+	}
+	wall_touches.swap(listed);
+	moved_near_walls = 0;
+}
+
+Stepper::WallMeeting Stepper::meeting(const WallTouch& touch) const
+{
+	const Wall& wall = scene.walls[touch.wall];
+	const GrainRow& row = rows[row_of[touch.grain]];
+	WallMeeting m;
+	m.n_x = wall.across_x() ? wall.outward() : 0;
+	m.n_y = wall.across_x() ? 0 : wall.outward();
+	const double dvx = wall.velocity_x() - row.vx, dvy = wall.velocity_y() - row.vy;
+	m.contact.overlap = row.radius + wall.outward() * ((wall.across_x() ? row.x : row.y) - wall.position);
+	m.contact.normal_velocity = dvx * m.n_x + dvy * m.n_y;
+	m.contact.tangential_velocity = row.surface_speed + (dvx * m.n_y - dvy * m.n_x);
+	m.contact.effective_radius = row.radius;
+	m.contact.effective_mass = row.inverse_mass > 0 ? 1 / row.inverse_mass : 0;
+	m.contact.dt = data.dt;
+	return m;
+}
+
+void Stepper::compute_wall_forces()
+{
+	for (Wall& wall : scene.walls) wall.force_x = wall.force_y = 0;
+	for (WallTouch& touch : wall_touches) {
+		const WallMeeting m = meeting(touch);
+		touch.overlap = m.contact.overlap;
+		touch.normal = touch.friction = 0;
+		touch.slip_before = touch.slip;
+		if (!(m.contact.overlap > 0)) {
+			touch.slip = 0;
+			continue;
+		}
+		const auto response = std::visit([&](const auto& law) { return law(m.contact, touch.slip); }, scene.law);
+		touch.normal = response.normal;
+		if (scene.friction) touch.friction = response.tangential, touch.slip = response.slip;
+		Wall& wall = scene.walls[touch.wall];
+		wall.force_x += touch.normal * m.n_x + touch.friction * m.n_y;
+		wall.force_y += touch.normal * m.n_y - touch.friction * m.n_x;
+	}
+}
+
+/// What walls do to a body of grains.
+void Stepper::add_wall_forces(std::size_t b)
+{
+	RigidBody& body = scene.bodies[b];
+	for (const WallTouch& touch : wall_touches) {
+		if (scene.grains[touch.grain].body != static_cast<int>(b) || !(touch.overlap > 0)) continue;
+		const WallMeeting m = meeting(touch);
+		const double x = -touch.normal * m.n_x - touch.friction * m.n_y, y = touch.friction * m.n_x - touch.normal * m.n_y;
+		const std::uint32_t at = row_of[touch.grain];
+		const GrainRow& row = rows[at];
+		const Member& member = members[at - n_free];
+		body.force_x += x;
+		body.force_y += y;
+		body.torque +=
+			(row.x - member.shift_x - body.x) * y - (row.y - member.shift_y - body.y) * x + row.radius * touch.friction;
+	}
+}
+
+/// Kicks the free grains at walls, then moves the walls.
+void Stepper::move_walls()
+{
+	for (const WallTouch& touch : wall_touches) {
+		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
+		const Wall& wall = scene.walls[touch.wall];
+		const double n_x = wall.across_x() ? wall.outward() : 0, n_y = wall.across_x() ? 0 : wall.outward();
+		GrainRow& row = rows[row_of[touch.grain]];
+		const double response = row.inverse_mass * data.kick;
+		const double kick_x = (-touch.normal * n_x - touch.friction * n_y) * response,
+					 kick_y = (touch.friction * n_x - touch.normal * n_y) * response;
+		row.vx += kick_x;
+		row.vy += kick_y;
+		row.x += kick_x * data.drift;
+		row.y += kick_y * data.drift;
+		row.surface_speed += touch.friction * response * data.spin_response;
+		fastest = std::max(fastest, std::hypot(row.vx, row.vy));
+	}
+	double fastest_wall = 0;
+	for (Wall& wall : scene.walls) {
+		wall.move(wall_length(scene, wall), data.kick, data.drift);
+		fastest_wall = std::max(fastest_wall, std::abs(wall.velocity));
+	}
+	moved_near_walls += (fastest + fastest_wall) * data.drift;
+	if (scene.target_area_fraction > 0 && area_fraction(scene) >= scene.target_area_fraction)
+		for (Wall& wall : scene.walls) wall.velocity = 0, wall.pressed = false;
+}
+
+void Stepper::check_walls_while_running() const
+{
+	for (const WallTouch& touch : wall_touches) {
+		const GrainRow& row = rows[row_of[touch.grain]];
+		const int owner = scene.grains[touch.grain].body;
+		const bool led = owner != free_grain && !scene.bodies[owner].responds_x && !scene.bodies[owner].responds_y;
+		const double overlap = meeting(touch).contact.overlap;
+		if (led || !(overlap > guards.largest_overlap * row.radius)) continue;
+		std::ostringstream message;
+		message << "step " << steps << ": grain " << touch.grain << " at (" << row.x << ", " << row.y << ") overlaps wall "
+				<< name_of(scene.walls[touch.wall].side) << " by " << overlap / row.radius << " of its radius, more than "
+				<< guards.largest_overlap
+				<< "; likely grains too soft for their speed or load, a wall too fast or light, or grains that began beyond it";
+		throw std::runtime_error(message.str());
+	}
+}
+
+std::vector<Contact> Stepper::wall_contacts() const
+{
+	std::vector<Contact> found;
+	const double bound = slipping_bound();
+	for (const WallTouch& touch : wall_touches) {
+		if (!(touch.overlap > 0)) continue;
+		const WallMeeting m = meeting(touch);
+		const GrainRow& row = rows[row_of[touch.grain]];
+		found.push_back(
+			{ touch.grain, touch.wall, m.n_x, m.n_y, row.x + row.radius * m.n_x, row.y + row.radius * m.n_y, touch.normal,
+				touch.friction, touch.overlap, touch.slip, std::abs(touch.friction) >= bound * std::abs(touch.normal) });
+	}
+	return found;
+}
+
+void Stepper::append_wall_touches(std::size_t b, std::vector<Touch>& touches) const
+{
+	const RigidBody& body = scene.bodies[b];
+	for (const Contact& c : wall_contacts()) {
+		if (scene.grains[c.first].body != static_cast<int>(b)) continue;
+		const Member& member = members[row_of[c.first] - n_free];
+		touches.push_back({ c.first, std::uint32_t(size()) + c.second, c.point_x - member.shift_x - body.x,
+			c.point_y - member.shift_y - body.y, c.n_x, c.n_y, c.normal, c.friction, c.slipping });
+	}
+}
+
+}  // namespace graindrive::loop
