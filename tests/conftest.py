@@ -1,6 +1,13 @@
 """What all tests here share."""
 
+import os
 import signal
+
+from hypothesis import settings
+
+# No test is timed; on a checking machine the same examples every time, elsewhere new ones.
+settings.register_profile("house", deadline=None, derandomize="CI" in os.environ)
+settings.load_profile("house")
 
 
 def pytest_configure():

@@ -81,15 +81,28 @@ def advance(steps):
     signals.check()
     if O.iter < target:
         _listener.raise_what_it_heard()
+        ask_engines()
         raise RuntimeError(f"an engine failed, or something paused YADE's loop, at step {O.iter} of {target}")
     return seconds
+
+
+def ask_engines():
+    """Call every engine in this thread, where what the failing one throws is heard: the step was not finished.
+
+    For a failure so early that nobody was waiting yet. The scene is lost either way; what was measured is kept.
+    """
+    from yade import O
+
+    for engine in O.engines:
+        if not engine.dead:
+            engine()
 
 
 class LoopListener:
     """Waits in a thread of its own for YADE's loop to end, the only way to learn what an engine threw there.
 
     YADE hands an engine's exception to whoever is inside `O.wait()` when the loop ends, and to nobody afterwards. One
-    wait may span many blocks; an engine that fails before the wait has begun is reported by YADE's own log alone.
+    wait may span many blocks; an engine that fails before the wait has begun has to be asked again.
     """
 
     def __init__(self):

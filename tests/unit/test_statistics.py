@@ -56,7 +56,11 @@ def test_what_has_no_mean_is_refused(samples):
         block_mean(samples)
 
 
-@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=200), st.floats(-1e3, 1e3), st.sampled_from([0.5, 2.0, 4.0]))
+# Six decimals: squares of smaller numbers would leave the normal range, where powers of two no longer scale exactly.
+DECIMALS = st.floats(-1e6, 1e6).map(lambda value: round(value, 6))
+
+
+@given(st.lists(DECIMALS, min_size=2, max_size=200), st.floats(-1e3, 1e3), st.sampled_from([0.5, 2.0, 4.0]))
 def test_mean_and_error_shift_and_scale(samples, shift, scale):
     x = np.array(samples)
     mean = block_mean(x)
