@@ -111,12 +111,11 @@ double Stepper::kinetic_energy() const
 
 double Stepper::kinetic_energy_on_step()
 {
-	if (selections == 0) select();
+	if (selection_due) select();  // not in the step that is undone: it may sort the rows
 	pairs.keep_slips();
 	const AlignedVector<GrainRow> before = rows;
 	const auto bodies_before = scene.bodies;
 	const long steps_before = steps;
-	const double moved = moved_since_selection, moved_search = moved_since_search, fastest_before = fastest;
 	data.kick = 0.5 * scene.dt;
 	data.drift = 0;
 	step(1);
@@ -126,9 +125,6 @@ double Stepper::kinetic_energy_on_step()
 	data.rows = rows.data();
 	scene.bodies = bodies_before;
 	steps = steps_before;
-	moved_since_selection = moved;
-	moved_since_search = moved_search;
-	fastest = fastest_before;
 	pairs.put_back_slips();
 	return energy;
 }
