@@ -106,8 +106,8 @@ template <class Visitor, class Self>
 void Stepper::visit_state(Visitor&& visit, Self& s)
 {
 	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
-	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.gap);
-	visit(s.moved_since_search), visit(s.moved_since_selection), visit(s.fastest), visit(s.guards);
+	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.guards);
+	visit(s.travelled), visit(s.allowed), visit(s.selection_due);
 	visit(s.wall_touches), visit(s.moved_near_walls);
 }
 
@@ -150,8 +150,8 @@ void Stepper::resume()
 	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
 	if (selections == 0) return;
 	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
-	pairs.point(data);
-	data.rows = rows.data();
+	find_neighbours();
+	point_at_lists();
 }
 
 }  // namespace graindrive::loop

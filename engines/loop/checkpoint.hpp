@@ -12,7 +12,7 @@
 
 namespace graindrive::loop {
 
-constexpr std::uint64_t checkpoint_version = 2;
+constexpr std::uint64_t checkpoint_version = 3;
 
 /// Writes beside `path`, flushes to the disk, renames. @throws std::runtime_error naming the file and the system's reason
 void write_checkpoint(const std::string& path, const std::string& body);

@@ -41,6 +41,8 @@ struct KernelData {
 	const std::uint32_t* fold_sources;
 	const std::uint32_t* block_pair_end;  ///< by block of free grains: all pairs owned up to the block end before this
 	const std::uint32_t* block_fold_end;
+	double* travelled;                          ///< by block: bound on any grain's way since pairs were selected [m]
+	const double* allowed;                      ///< by block: how long that may grow before they must be selected anew [m]
 	double length_x, length_y;                  ///< periods [m], 0 where not periodic
 	double inverse_length_x, inverse_length_y;  ///< [1/m], 0 where not periodic
 	double dt;                                  ///< time step of the springs [s]
@@ -51,16 +53,12 @@ struct KernelData {
 	const ContactLaw* law;
 };
 
-struct FastestSpeed {
-	double x = 0, y = 0;  ///< largest |v_x| and |v_y| [m/s]
-};
-
 struct Kernel {
 	/// Forces of the pairs [begin, end), a multiple of `pack_alignment` long; wrapped pairs take the nearest image.
 	void (*pairs)(const KernelData&, std::uint32_t begin, std::uint32_t end, bool wrapped);
 	/// Pairs owned by the blocks [begin, end) of free grains from pair `first_pair` on, each block moved as soon as its forces are known.
-	FastestSpeed (*sweep)(
-		const KernelData&, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair);
+	/// True if a block has travelled farther than it is allowed to.
+	bool (*sweep)(const KernelData&, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair);
 	Processor processor;
 	int width;  ///< pairs at once
 };

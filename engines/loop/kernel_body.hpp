@@ -52,45 +52,15 @@ struct Body {
 	using Turn = Transposer<P>;
 	using S = typename Turn::Number;
 
-	template <bool Wrapped>
-	static inline void pack(const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at)
+	static void pairs(const KernelData& data, std::uint32_t begin, std::uint32_t end, bool wrapped)
 	{
-		S column[6];
-		Turn::template columns<Wrapped>(difference, data.links + at, column);
-		P* slips = static_cast<P*>(data.slips) + at;
-		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at),
-				mass = S::load(static_cast<const P*>(data.effective_masses) + at);
-		PackForces<S> f = pack_forces(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
-		if constexpr (Friction) f.slip.store(slips);
-		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
+		run(data, { 0, 1, 0, begin, end, wrapped, false });
 	}
 
-	__attribute__((flatten)) static void pairs(const KernelData& data, std::uint32_t begin, std::uint32_t end, bool wrapped)
-	{
-		const Law law = narrowed(data);
-		const RowDifference difference(data);
-		if (wrapped)
-			for (std::uint32_t at = begin; at < end; at += S::width) pack<true>(difference, data, law, at);
-		else
-			for (std::uint32_t at = begin; at < end; at += S::width) pack<false>(difference, data, law, at);
-	}
-
-	__attribute__((flatten)) static FastestSpeed sweep(
+	static bool sweep(
 		const KernelData& data, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair)
 	{
-		const Law law = narrowed(data);
-		const RowDifference difference(data);
-		Two fastest = {};
-		std::uint32_t at = first_pair;
-		for (std::uint32_t block = begin; block < end; ++block) {
-			for (const std::uint32_t done = data.block_pair_end[block]; at < done; at += S::width)
-				pack<false>(difference, data, law, at);
-			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
-				fold(data, block);
-			const std::uint32_t first = block * grains_per_block;
-			move_block(data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, n_free - first), fastest);
-		}
-		return { std::sqrt(fastest[0]), std::sqrt(fastest[1]) };
+		return run(data, { begin, end, n_free, first_pair, 0, false, true });
 	}
 
 private:
@@ -98,6 +68,51 @@ private:
 	typedef P Four __attribute__((vector_size(4 * sizeof(P))));
 
 	static Law narrowed(const KernelData& data);
+
+	struct Work {
+		std::uint32_t block_begin, block_end, n_free, pair_begin, pair_end;
+		bool wrapped, moving;  // across periodic sides; blocks move, and say where their pairs end
+	};
+
+	/// Early pairs and sweeps share one copy of the machine code: in another the compiler may fuse another product of a sum, and a pair
+	/// would be rounded by where it is computed, that is by the number of threads.
+	__attribute__((flatten, noipa)) static bool run(const KernelData& data, const Work& work)
+	{
+		const Law law = narrowed(data);
+		const RowDifference difference(data);
+		bool beyond = false;
+		std::uint32_t at = work.pair_begin;
+		for (std::uint32_t block = work.block_begin; block < work.block_end; ++block) {
+			const std::uint32_t done = work.moving ? data.block_pair_end[block] : work.pair_end;
+			for (; at < done; at += S::width) pack(difference, data, law, at, work.wrapped);
+			if (!work.moving) break;
+			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
+				fold(data, block);
+			const std::uint32_t first = block * grains_per_block;
+			const Two fastest =
+				move_block(data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, work.n_free - first));
+			data.travelled[block] += std::sqrt(fastest[0] + fastest[1]) * data.drift;
+			beyond |= data.travelled[block] > data.allowed[block];
+		}
+		return beyond;
+	}
+
+	static inline void pack(
+		const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at, bool wrapped)
+	{
+		S column[6];
+		asm volatile("" : "+r"(wrapped));  // or the compiler makes a loop for either, with a copy of the law in each
+		if (__builtin_expect(wrapped, false))
+			Turn::template columns<true>(difference, data.links + at, column);
+		else
+			Turn::template columns<false>(difference, data.links + at, column);
+		P* slips = static_cast<P*>(data.slips) + at;
+		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at),
+				mass = S::load(static_cast<const P*>(data.effective_masses) + at);
+		PackForces<S> f = pack_forces(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
+		if constexpr (Friction) f.slip.store(slips);
+		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
+	}
 
 	static void fold(const KernelData& data, std::uint32_t block)
 	{
@@ -117,8 +132,8 @@ private:
 		return *reinterpret_cast<const Four*>(forces + bytes);
 	}
 
-	static inline void move_block(
-		const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count, Two& fastest)
+	/// Largest v_x^2 and v_y^2 among the grains moved.
+	static inline Two move_block(const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count)
 	{
 		const auto* forces = static_cast<const char*>(data.forces);
 		const ForceSlots* slots = data.slots + first;
@@ -128,7 +143,7 @@ private:
 		const Four partner_sign = { -1, -1, 1, 1 };
 		const double kick = data.kick, spin_response = data.spin_response;
 		const std::uint32_t with_pairs = block.with_pairs;
-		Two highest = fastest;
+		Two highest = {};
 		const auto kick_and_drift = [&](std::uint32_t g) __attribute__((always_inline))
 		{
 			const std::uint32_t* at = slots[g].at;
@@ -147,7 +162,7 @@ private:
 			for (std::uint32_t k = 0; k < with_pairs; ++k) kick_and_drift(block.order[k]);
 			for (std::uint32_t k = with_pairs; k < count; ++k) drift_row(rows[block.order[k]], gravity_kick, drift, highest);
 		}
-		fastest = highest;
+		return highest;
 	}
 
 	static inline void drift_row(GrainRow& row, Two kick, Two drift, Two& highest)

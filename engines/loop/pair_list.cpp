@@ -15,7 +15,7 @@ std::uint32_t padded(std::uint32_t places) { return (places + pack_alignment - 1
 
 }  // namespace
 
-void PairList::select(const GrainRow* rows, const Box& box, double gap)
+void PairList::select(const GrainRow* rows, const Box& box, const std::vector<double>& reach)
 {
 	for (Candidate& pair : candidates) {
 		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
@@ -25,8 +25,8 @@ void PairList::select(const GrainRow* rows, const Box& box, double gap)
 			dx = d.x;
 			dy = d.y;
 		}
-		const double reach = a.radius + b.radius + gap;
-		pair.near = dx * dx + dy * dy < reach * reach;
+		const double near = reach[pair.first] + reach[pair.second];
+		pair.near = dx * dx + dy * dy < near * near;
 	}
 }
 

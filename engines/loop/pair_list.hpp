@@ -19,8 +19,9 @@ class PairList {
 public:
 	std::vector<Candidate> candidates;
 
-	/// Selects the candidates whose surfaces are nearer than `gap` [m], lays them out for `threads` and points the grains' slots at them.
-	void select(const GrainRow* rows, const Box& box, double gap);
+	/// Selects the candidates nearer than the sum of their reaches (radius and the way a grain may go until the next selection [m]).
+	void select(const GrainRow* rows, const Box& box, const std::vector<double>& reach);
+	/// Lays the selected ones out for `threads` and points the grains' slots at them.
 	void lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision,
 		std::uint32_t dummy_row);
 	/// Brings the tangential springs of the selected pairs back into the candidates.

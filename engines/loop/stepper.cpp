@@ -8,13 +8,6 @@
 
 namespace graindrive::loop {
 
-namespace {
-
-constexpr double steps_between_selections = 40;              // aimed at, where grains are fast
-constexpr double smallest_gap = 0.002, smallest_skin = 0.1;  // [d]
-
-}  // namespace
-
 Stepper::Stepper(const Scene& given)
 	: scene(given),
 	  kernel(choose_kernel({ given.law.index(), given.friction, given.precision })),
@@ -30,8 +23,7 @@ Stepper::Stepper(const Scene& given)
 	data.law = &scene.law;
 	if (scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = scene.box.x_high - scene.box.x_low);
 	if (scene.box.periodic_y) data.inverse_length_y = 1 / (data.length_y = scene.box.y_high - scene.box.y_low);
-	thread_fastest.resize(scene.threads);
-	fastest = HUGE_VAL;
+	thread_beyond.resize(scene.threads);
 }
 
 void Stepper::arrange_rows()
@@ -129,7 +121,7 @@ bool Stepper::one_step(int rank, bool early_pairs_done)
 		team.barrier();
 	}
 	const SweepRange& mine = pairs.sweeps[rank];
-	thread_fastest[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
+	thread_beyond[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
 	team.barrier();
 	if (rank == 0) finish();
 	team.barrier();
@@ -148,7 +140,7 @@ void Stepper::compute_early_pairs(int rank)
 void Stepper::prepare()
 {
 	try {
-		if (moved_since_selection > gap || selections == 0) select();
+		if (selection_due) select();
 		if (!scene.walls.empty()) list_wall_touches();
 		if (guards.every > 0 && steps % guards.every == 0) {
 			check_pairs();
@@ -163,21 +155,14 @@ void Stepper::prepare()
 
 void Stepper::finish()
 {
-	FastestSpeed all;
-	for (const FastestSpeed& one : thread_fastest) all = { std::max(all.x, one.x), std::max(all.y, one.y) };
-	fastest = std::hypot(all.x, all.y);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
 		if (body_fixed[b]) continue;
 		collect_forces(b);
 		move_body(b);
-		const RigidBody& body = scene.bodies[b];
-		fastest = std::max(fastest, std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b]);
 	}
 	if (!scene.walls.empty()) move_walls();
 	if (books) book_energy();
-	const double approach = 2 * fastest * data.drift;
-	moved_since_selection += approach;
-	moved_since_search += approach;
+	spend_budgets();
 	++steps;
 	body_forces_known = false;
 }
@@ -185,26 +170,22 @@ void Stepper::finish()
 void Stepper::select()
 {
 	if (selections > 0) pairs.keep_slips();
-	const double wanted = std::isfinite(fastest) ? 2 * fastest * scene.dt * steps_between_selections : 0;
-	gap = std::clamp(wanted, smallest_gap * typical_diameter, 0.5 * std::max(skin, smallest_skin * typical_diameter));
-	if (searches > 0 && moved_since_search > skin - gap) moved_since_search = 2 * farthest_moved();
-	if (searches == 0 || !(moved_since_search <= skin - gap)) search();
-	pairs.select(rows.data(), scene.box, gap);
-	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
-	pairs.point(data);
-	data.rows = rows.data();
-	moved_since_selection = 0;
-	++selections;
-}
-
-double Stepper::farthest_moved() const
-{
-	double farthest = 0;
-	for (std::uint32_t i = 0; i < n_grains; ++i) {
-		const double dx = rows[i].x - searched_at[2 * i], dy = rows[i].y - searched_at[2 * i + 1];
-		farthest = std::max(farthest, dx * dx + dy * dy);
+	measure_speeds();
+	allow_travel();
+	if (searches == 0 || !(2 * farthest_before_selection() <= skin)) {
+		search();
+		measure_speeds();
+		find_neighbours();
+		allow_travel();
 	}
-	return std::sqrt(farthest);
+	std::vector<double> reach(n_grains);
+	for (std::uint32_t i = 0; i < n_grains; ++i) reach[i] = rows[i].radius + allowed[party_of(i)];
+	pairs.select(rows.data(), scene.box, reach);
+	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
+	point_at_lists();
+	std::fill(travelled.begin(), travelled.end(), 0);
+	selection_due = false;
+	++selections;
 }
 
 std::size_t Stepper::pairs_selected() const

@@ -129,11 +129,15 @@ private:
 	std::vector<double> body_reach;           // farthest point of each body from its centre [m]
 	std::vector<char> body_fixed;
 
-	double typical_diameter = 0, largest_free_radius = 0, skin = 0, gap = 0;
-	double moved_since_search = 0, moved_since_selection = 0;  // bounds on the approach of any two grains [m]
-	double fastest = 0;                                        // [m/s]
-	std::vector<double> searched_at;                           // x, y of free grains at the last search
-	std::vector<FastestSpeed> thread_fastest;
+	double typical_diameter = 0, largest_free_radius = 0, skin = 0;
+	std::vector<double> searched_at;  // x, y of grains at the last search
+
+	// Blocks of free grains, then bodies: each keeps its own budget of motion (stepper_budgets.cpp).
+	std::vector<double> travelled, allowed;                           // bound on the way since the last selection, its limit [m]
+	std::vector<double> speed;                                        // bounds at the last selection [m/s]
+	std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;  // those with candidates in common
+	std::vector<char> thread_beyond;                                  // by thread: a block went beyond its limit in the last step
+	bool selection_due = true;
 	std::exception_ptr failure;
 
 	void arrange_rows();
@@ -155,10 +159,17 @@ private:
 	void search();
 	void sort_rows();
 	void select();
+	void point_at_lists();
 	void finish();
 	void move_body(std::size_t body);
 	void collect_forces(std::size_t body);
-	double farthest_moved() const;
+	std::uint32_t n_blocks() const { return (n_free + grains_per_block - 1) / grains_per_block; }
+	std::uint32_t party_of(std::uint32_t row) const;
+	void measure_speeds();
+	void find_neighbours();
+	void allow_travel();
+	double farthest_before_selection() const;
+	void spend_budgets();
 	double slipping_bound() const;
 
 	struct Books {

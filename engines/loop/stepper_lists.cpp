@@ -50,9 +50,8 @@ struct SpringBook {
 
 void Stepper::search()
 {
-	const double wanted = std::isfinite(fastest) ? 2 * fastest * scene.dt * steps_between_searches : 0;
+	const double wanted = 2 * *std::max_element(speed.begin(), speed.end()) * scene.dt * steps_between_searches;
 	skin = scene.skin > 0 ? scene.skin : std::clamp(wanted, smallest_skin * typical_diameter, largest_skin * typical_diameter);
-	gap = std::min(gap, 0.5 * skin);
 	for (std::uint32_t i = 0; i < n_free; ++i) {
 		if (scene.box.periodic_x) rows[i].x = into_box(rows[i].x, scene.box.x_low, scene.box.x_high);
 		if (scene.box.periodic_y) rows[i].y = into_box(rows[i].y, scene.box.y_low, scene.box.y_high);
@@ -71,7 +70,6 @@ void Stepper::search()
 		searched_at[2 * i] = rows[i].x;
 		searched_at[2 * i + 1] = rows[i].y;
 	}
-	moved_since_search = 0;
 	++searches;
 }
 

@@ -112,7 +112,7 @@ double Stepper::kinetic_energy() const
 
 double Stepper::kinetic_energy_on_step()
 {
-	if (selections == 0 || moved_since_selection > gap) select();  // the trial step must not sort rows
+	if (selection_due) select();  // not in the step that is undone: it may sort the rows
 	pairs.keep_slips();
 	const AlignedVector<GrainRow> before = rows;
 	std::unique_ptr<Books> aside(nullptr);
@@ -121,8 +121,7 @@ double Stepper::kinetic_energy_on_step()
 	const auto walls_before = scene.walls;
 	const auto touches_before = wall_touches;
 	const long steps_before = steps;
-	const double moved = moved_since_selection, moved_search = moved_since_search, fastest_before = fastest,
-				 moved_walls = moved_near_walls;
+	const double moved_walls = moved_near_walls;
 	data.kick = 0.5 * scene.dt;
 	data.drift = 0;
 	step(1);
@@ -134,10 +133,7 @@ double Stepper::kinetic_energy_on_step()
 	scene.walls = walls_before;
 	wall_touches = touches_before;
 	steps = steps_before;
-	moved_since_selection = moved;
-	moved_since_search = moved_search;
 	moved_near_walls = moved_walls;
-	fastest = fastest_before;
 	pairs.put_back_slips();
 	books.swap(aside);
 	return energy;

@@ -233,14 +233,22 @@ void Stepper::move_walls()
 		row.x += kick_x * data.drift;
 		row.y += kick_y * data.drift;
 		row.surface_speed += touch.friction * response * data.spin_response;
-		fastest = std::max(fastest, std::hypot(row.vx, row.vy));
+		const std::uint32_t block = party_of(row_of[touch.grain]);
+		travelled[block] += std::hypot(kick_x, kick_y) * data.drift;  // on top of what the sweep has counted
+		selection_due |= travelled[block] > allowed[block];
 	}
 	double fastest_wall = 0;
 	for (Wall& wall : scene.walls) {
 		wall.move(wall_length(scene, wall), data.kick, data.drift);
 		fastest_wall = std::max(fastest_wall, std::abs(wall.velocity));
 	}
-	moved_near_walls += (fastest + fastest_wall) * data.drift;
+	double fastest = 0;  // squared
+	for (std::uint32_t i = 0; i < n_free; ++i) fastest = std::max(fastest, rows[i].vx * rows[i].vx + rows[i].vy * rows[i].vy);
+	double fastest_body = 0;
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+		fastest_body = std::max(
+			fastest_body, std::hypot(scene.bodies[b].vx, scene.bodies[b].vy) + std::abs(scene.bodies[b].spin) * body_reach[b]);
+	moved_near_walls += (std::max(std::sqrt(fastest), fastest_body) + fastest_wall) * data.drift;
 	if (scene.target_area_fraction > 0 && area_fraction(scene) >= scene.target_area_fraction)
 		for (Wall& wall : scene.walls) wall.velocity = 0, wall.pressed = false;
 }
