@@ -139,7 +139,7 @@ def check_period(p, dt):
         )
 
 
-def make_bed(p, outline_vertices, clump, at, dt, grains):
+def make_bed(p, vertices, area, clump, at, dt, grains):
     """Return the settled bed around the held body, from the cache or by pouring it."""
     return packing.settled_bed(
         packing.BedRecipe(
@@ -150,19 +150,13 @@ def make_bed(p, outline_vertices, clump, at, dt, grains):
             material=grains,
             beads=tuple(map(tuple, clump.beads + at)),
             bead_radius=clump.bead_radius,
-            outline=tuple(map(tuple, outline_vertices + at)),
-            outline_area=polygon_area(outline_vertices),
+            outline=tuple(map(tuple, vertices + at)),
+            outline_area=area,
             dt=dt,
             rest=p.rest,
             seed=p.seed,
         )
     )
-
-
-def polygon_area(vertices):
-    """Area of a closed polygon, vertices (m, 2), by the shoelace formula."""
-    x, y = vertices.T
-    return abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
 
 
 # Drive, Measure, Run --------------------------------------------------------------------------------------------------
@@ -179,7 +173,7 @@ def run(p, folder):
         stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
         scene.load(folder.resumed["folder"])
     else:
-        stage = build(p, grains, dt, clump, vertices)
+        stage = build(p, grains, dt, clump, vertices, outline.area)
     folder.note(dt=dt, dt_over_critical=ratio, n_grains=stage["grains"])
     folder.write(
         "intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d"), bead_radius=(clump.bead_radius, "d"))
@@ -188,12 +182,12 @@ def run(p, folder):
     record(p, folder, stage)
 
 
-def build(p, grains, dt, clump, vertices):
+def build(p, grains, dt, clump, vertices, area):
     """Put bed, body, drive and measure into YADE; return the counts of base and grains and the body's id."""
     from yade import O
 
     at = np.array([p.width / 2, p.height - p.depth])
-    bed = make_bed(p, vertices, clump, at, dt, grains)
+    bed = make_bed(p, vertices, area, clump, at, dt, grains)
     scene.start(p.width, float(bed["y"].max()) + 2 * p.amplitude + 10)
     base = scene.add_base(p.width, 1.0, grains.density)
     ids = scene.add_disks(bed["x"], bed["y"], bed["r"], grains.density)

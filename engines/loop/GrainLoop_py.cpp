@@ -2,6 +2,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/loop/GrainLoop.hpp"
+#include "engines/seam/numpy_array.hpp"
 
 namespace graindrive {
 namespace {
@@ -9,15 +10,7 @@ namespace {
 namespace py = boost::python;
 namespace np = boost::python::numpy;
 
-template <class T>
-np::ndarray array_of(const std::vector<T>& values, int width = 1)
-{
-	const long rows = long(values.size()) / width;
-	np::ndarray array = width > 1 ? np::zeros(py::make_tuple(rows, width), np::dtype::get_builtin<T>())
-	                              : np::zeros(py::make_tuple(rows), np::dtype::get_builtin<T>());
-	std::copy(values.begin(), values.end(), reinterpret_cast<T*>(array.get_data()));
-	return array;
-}
+using seam::array_of;
 
 /// YADE tells an engine its scene at every step; a call from Python may come before the first one.
 loop::Stepper& running(GrainLoop& loop)

@@ -2,6 +2,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/seam/contact_phys.hpp"
+#include "engines/seam/numpy_array.hpp"
 
 namespace graindrive {
 namespace {
@@ -9,15 +10,7 @@ namespace {
 namespace py = boost::python;
 namespace np = boost::python::numpy;
 
-template <class T>
-np::ndarray column(const std::vector<T>& values, int width = 1)
-{
-	const long rows = long(values.size()) / width;
-	np::ndarray array = width > 1 ? np::zeros(py::make_tuple(rows, width), np::dtype::get_builtin<T>())
-	                              : np::zeros(py::make_tuple(rows), np::dtype::get_builtin<T>());
-	std::copy(values.begin(), values.end(), reinterpret_cast<T*>(array.get_data()));
-	return array;
-}
+using seam::array_of;
 
 void append(std::vector<Real>& rows, const Vector3r& v) { rows.insert(rows.end(), v.data(), v.data() + 3); }
 
@@ -40,8 +33,9 @@ py::dict bodies(const yade::Scene& scene)
 		append(spin, body.state->angVel);
 	}
 	py::dict table;
-	table["id"] = column(id), table["clump"] = column(clump), table["radius"] = column(radius), table["mass"] = column(mass);
-	table["position"] = column(position, 3), table["velocity"] = column(velocity, 3), table["spin"] = column(spin, 3);
+	table["id"] = array_of(id), table["clump"] = array_of(clump), table["radius"] = array_of(radius),
+	table["mass"] = array_of(mass);
+	table["position"] = array_of(position, 3), table["velocity"] = array_of(velocity, 3), table["spin"] = array_of(spin, 3);
 	return table;
 }
 
@@ -68,9 +62,10 @@ py::dict contacts(const yade::Scene& scene)
 		}
 	}
 	py::dict table;
-	table["i"] = column(i), table["j"] = column(j), table["slipping"] = column(slipping), table["overlap"] = column(overlap);
-	table["point"] = column(point, 3), table["normal"] = column(normal, 3);
-	table["normal_force"] = column(normal_force, 3), table["tangential_force"] = column(tangential_force, 3);
+	table["i"] = array_of(i), table["j"] = array_of(j), table["slipping"] = array_of(slipping),
+	table["overlap"] = array_of(overlap);
+	table["point"] = array_of(point, 3), table["normal"] = array_of(normal, 3);
+	table["normal_force"] = array_of(normal_force, 3), table["tangential_force"] = array_of(tangential_force, 3);
 	return table;
 }
 
