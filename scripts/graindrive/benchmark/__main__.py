@@ -1,4 +1,4 @@
-"""Times GrainLoop against LAMMPS and YADE's loop, alternating, and prints median ratios.
+"""Times GrainLoop against LAMMPS, LIGGGHTS and YADE's loop, alternating, and prints median ratios.
 
 usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N]
 
@@ -12,6 +12,7 @@ whose kinetic energies differ after the first portion gets no ratio.
 """
 
 import argparse
+import functools
 import json
 import os
 import statistics
@@ -21,13 +22,13 @@ import tempfile
 
 import numpy as np
 
-from . import lammps
-from .scenes import FREE, SCENES, scene
+from . import lammps, liggghts
+from .scenes import FREE, SCENES, scene, with_restitution
 
 # Largest relative difference of kinetic energy after the first portion, by law. Hertz: the same arithmetic from the same
 # state, and LAMMPS's first slip of moving starts (1e-6). Drum: LAMMPS damps by m_eff gamma and lets springs slip otherwise:
-# alike, not equal.
-SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05}
+# alike, not equal. Restitution: LIGGGHTS cuts springs at the bound, ours spring and dashpot together; few slip in a bed.
+SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05, "hertzRestitution": 1e-3}
 YADE_SHARE = 100  # YADE's loop gets a hundredth of the steps
 
 
@@ -82,23 +83,45 @@ def row(name, a_scene, threads, peer, ours, theirs, precision="double"):
     )
 
 
-def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
-    """Return the row against LAMMPS on as many ranks as threads; None, with the reason on standard error, if it differs."""
+def against(peer_name, run_peer, name, a_scene, path, threads, rounds, steps):
+    """Return the row against a peer, run by `run_peer(steps)`; None, with the reason on standard error, if it differs."""
     ours, theirs, particles = [], [], len(a_scene["x"])
     worker = Ours(path, "grain", threads=threads)
     try:
         for k in range(rounds):
-            peer = lammps.run(a_scene, folder, steps, threads)
+            peer = run_peer(steps)
             own = worker.run(steps if k else steps - 1)  # beginning on the step was the first
             reason = differs(own["energy"], peer["energy"], SAME[str(a_scene["law"])]) if k == 0 else None
             if reason:
-                print(f"{name}: no ratio against LAMMPS: {reason}", file=sys.stderr)
+                print(f"{name}: no ratio against {peer_name}: {reason}", file=sys.stderr)
                 return None
             ours.append(rate(own, particles, steps if k else steps - 1, threads))
             theirs.append(rate(peer, particles, steps, threads))
     finally:
         worker.close()
-    return row(name, a_scene, threads, "LAMMPS" if threads == 1 else f"LAMMPS, {threads} ranks", ours, theirs)
+    return row(name, a_scene, threads, peer_name if threads == 1 else f"{peer_name}, {threads} ranks", ours, theirs)
+
+
+def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
+    """Yield the rows against LAMMPS on as many ranks as threads."""
+    if not lammps.available():
+        print("LAMMPS is not installed (Debian's package lammps); no ratio against it", file=sys.stderr)
+        return
+    lammps.write(a_scene, folder)
+    for n in range(1, threads + 1):
+        run_peer = functools.partial(lammps.run, a_scene, folder, ranks=n)
+        yield against("LAMMPS", run_peer, name, a_scene, path, n, rounds, steps)
+
+
+def against_liggghts(name, a_scene, folder, rounds, steps):
+    """Yield the row of the same bed under the law that LIGGGHTS has."""
+    if not liggghts.available():
+        print("LIGGGHTS is not installed (Debian's package liggghts); no ratio against it", file=sys.stderr)
+        return
+    twin = with_restitution(a_scene)
+    path = save(twin, folder, "restitution.npz")
+    liggghts.write(twin, folder)
+    yield against("LIGGGHTS", functools.partial(liggghts.run, twin, folder), name, twin, path, 1, rounds, steps)
 
 
 def against_yade(name, a_scene, path, rounds, steps):
@@ -163,19 +186,14 @@ def save(a_scene, folder, file_name):
 def measure(name, quick, threads):
     """Yield the rows of one scene."""
     a_scene = scene(name)
-    a_scene["kind"] = a_scene["kind"].astype(int)
     rounds, steps = (3, 1000) if quick else (5, 3000)
     if np.sum(a_scene["kind"] == FREE) > 20_000:
         steps //= 3
     with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
         path = save(a_scene, folder, "scene.npz")
-        if lammps.available():
-            lammps.write(a_scene, folder)
-            for n in range(1, threads + 1):
-                yield against_lammps(name, a_scene, path, folder, n, rounds, steps)
-        else:
-            print("LAMMPS is not installed (Debian's package lammps); no ratio against it", file=sys.stderr)
+        yield from against_lammps(name, a_scene, path, folder, threads, rounds, steps)
         if name == "bed10k":
+            yield from against_liggghts(name, a_scene, folder, rounds, steps)
             yield against_double(name, a_scene, path, rounds, 2 * steps)
             yield against_yade(name, a_scene, path, 3, 2 * steps)
         if name == "wiggle63k":

@@ -1,12 +1,10 @@
 """The same scene in LAMMPS: data file, input, one run, and what its log says."""
 
-import re
 import shutil
-import subprocess
-from pathlib import Path
 
 import numpy as np
 
+from . import peer_files
 from .ours import DRUM_MASS
 from .scenes import DRIVEN
 
@@ -19,7 +17,7 @@ boundary {boundary} f p
 processors {ranks} 1 1
 atom_style sphere
 comm_modify vel yes
-read_data {data}
+read_data scene.data
 set group all density/disc {density}
 group wall type 2
 group driven type 3
@@ -50,23 +48,8 @@ def available():
 
 
 def write(a_scene, folder):
-    """Write the data file of a scene."""
-    kind, r = a_scene["kind"], a_scene["r"]
-    margin = 20 * r.max()
-    low, high = a_scene["y"].min() - margin, a_scene["y"].max() + margin
-    left, right = (
-        (0, a_scene["period"]) if a_scene["period"] > 0 else (a_scene["x"].min() - margin, a_scene["x"].max() + margin)
-    )
-    x = a_scene["x"] % a_scene["period"] if a_scene["period"] > 0 else a_scene["x"]
-    lines = [
-        f"scene\n\n{len(r)} atoms\n3 atom types\n\n{left:.17g} {right:.17g} xlo xhi\n{low:.17g} {high:.17g} ylo yhi"
-    ]
-    lines.append("-0.5 0.5 zlo zhi\n\nAtoms # sphere\n")
-    lines += [f"{i + 1} {kind[i] + 1} {2 * r[i]:.17g} 1.0 {x[i]:.17g} {a_scene['y'][i]:.17g} 0" for i in range(len(r))]
-    lines.append("\nVelocities\n")
-    v = a_scene["vx"], a_scene["vy"], a_scene["spin"]
-    lines += [f"{i + 1} {v[0][i]:.17g} {v[1][i]:.17g} 0 0 0 {v[2][i]:.17g}" for i in range(len(r))]
-    (Path(folder) / "scene.data").write_text("\n".join(lines) + "\n")
+    """Write the data file of a scene; masses come from `set density/disc`."""
+    peer_files.write_data(a_scene, folder, lambda i: f"{2 * a_scene['r'][i]:.17g} 1.0")
 
 
 def pair_style(a_scene):
@@ -104,9 +87,8 @@ def run(a_scene, folder, steps, ranks):
     text = INPUT.format(
         boundary="p" if a_scene["period"] > 0 else "f",
         ranks=ranks,
-        data="scene.data",
         density=float(a_scene["density"]),
-        skin=0.1 * 2 * float(np.median(a_scene["r"])),
+        skin=peer_files.skin(a_scene),
         pair=pair_style(a_scene),
         dt=float(a_scene["dt"]),
         gravity=float(a_scene["gravity"]),
@@ -114,19 +96,6 @@ def run(a_scene, folder, steps, ranks):
         masses=masses,
         steps=steps,
     )
-    (Path(folder) / "scene.in").write_text(text)
-    command = ["lmp", "-in", "scene.in", "-log", "scene.log", "-screen", "none"]
-    if ranks > 1:
-        command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks), *command]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    log = (Path(folder) / "scene.log").read_text()
-    if done.returncode or "Loop time" not in log:
-        raise RuntimeError(
-            f"LAMMPS failed: {(done.stderr or log).strip().splitlines()[-1:]}; its input is {folder}/scene.in"
-        )
-    wall = float(re.search(r"Loop time of (\S+)", log)[1])
-    share = float(re.search(r"([\d.]+)% CPU use", log)[1]) / 100
-    _, slide, turn = [
-        line.split() for line in log[: log.index("Loop time")].splitlines() if re.match(r"\s*\d+\s", line)
-    ][-1]
-    return dict(wall=wall, cpu=wall * share, energy=float(slide) + 1.25 * float(turn))
+    launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+    timing = peer_files.run([*launcher, "lmp"], text, folder, "LAMMPS")
+    return dict(wall=timing["wall"], cpu=timing["cpu"], energy=timing["slide"] + 1.25 * timing["turn"])

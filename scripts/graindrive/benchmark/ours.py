@@ -10,6 +10,11 @@ import numpy as np
 from .. import engines
 from .scenes import DRIVEN, FREE, WALL
 
+LAW_CONSTANTS = {
+    "hertzHistory": ("normalStiffness", "tangentialStiffness", "normalDamping", "tangentialDamping"),
+    "hertzRestitution": ("young", "poisson", "restitution"),
+    "springDashpot": ("normalStiffness", "tangentialStiffness", "restitution"),
+}
 DRUM_MASS = 1e9  # wall and intruder of a drum are as good as infinitely heavy
 
 
@@ -29,7 +34,7 @@ def bodies(a_scene):
     ):
         body = utils.sphere((x, y, 0), r, color=(1, 1, 1))
         mass = float(a_scene["density"]) * math.pi * r**2
-        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * (mass * r**2 / 2)
+        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * (float(a_scene["inertia"]) * mass * r**2)
         body.state.blockedDOFs = "zXY" if kind == FREE else "xyzXYZ"
         body.state.vel, body.state.angVel = Vector3(vx, vy, 0), Vector3(0, 0, spin)
         if kind == WALL and a_scene["drive"][2] and a_scene["period"] == 0:
@@ -46,11 +51,7 @@ def bodies(a_scene):
 
 def law_settings(a_scene):
     """Return the law's constants under YADE's names."""
-    if str(a_scene["law"]) == "springDashpot":
-        names = ("normalStiffness", "tangentialStiffness", "restitution")
-    else:
-        names = ("normalStiffness", "tangentialStiffness", "normalDamping", "tangentialDamping")
-    return dict(zip(names, map(float, a_scene["constants"])))
+    return dict(zip(LAW_CONSTANTS[str(a_scene["law"])], map(float, a_scene["constants"])))
 
 
 def grain_loop(a_scene, **settings):

@@ -1,0 +1,70 @@
+"""The same scene in LIGGGHTS: Hertz with restitution damping, in the plane, with the moments of inertia of spheres.
+
+LIGGGHTS knows spheres only: every disk is a sphere of the disk's mass, on both sides of the comparison.
+"""
+
+import shutil
+
+from . import peer_files
+
+INPUT = """
+atom_style granular
+atom_modify map array sort 1000 0
+dimension 2
+units si
+newton off
+soft_particles yes
+communicate single vel yes
+boundary p f p
+read_data scene.data
+neighbor {skin} bin
+neigh_modify delay 0 every 1 check yes
+group wall type 2
+group free type 1
+neigh_modify exclude group wall wall
+fix young all property/global youngsModulus peratomtype {young} {young} {young}
+fix poisson all property/global poissonsRatio peratomtype {poisson} {poisson} {poisson}
+fix bounce all property/global coefficientRestitution peratomtypepair 3 {restitution}
+fix rub all property/global coefficientFriction peratomtypepair 3 {friction}
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep {dt}
+fix weight free gravity {gravity} vector 0 -1 0
+fix move free nve/sphere
+fix rest wall freeze
+fix plane all enforce2d
+compute slide free ke
+compute turn free erotate/sphere
+thermo {steps}
+thermo_style custom step c_slide c_turn
+thermo_modify lost error norm no format float %.15g
+run {steps}
+"""
+
+
+def available():
+    """Return LIGGGHTS's command, or None."""
+    return shutil.which("liggghts")
+
+
+def write(a_scene, folder):
+    """Write the data file: density such that a sphere has the disk's mass, rho pi r^2 = density 4/3 pi r^3."""
+    density, r = float(a_scene["density"]), a_scene["r"]
+    peer_files.write_data(a_scene, folder, lambda i: f"{2 * r[i]:.17g} {0.75 * density / r[i]:.17g}")
+
+
+def run(a_scene, folder, steps):
+    """Run some steps from the scene's start on one core; return {wall, cpu, energy}."""
+    young, poisson, restitution = map(float, a_scene["constants"])
+    text = INPUT.format(
+        skin=peer_files.skin(a_scene),
+        young=young,
+        poisson=poisson,
+        restitution=" ".join([str(restitution)] * 9),
+        friction=" ".join([str(float(a_scene["friction"]))] * 9),
+        dt=float(a_scene["dt"]),
+        gravity=float(a_scene["gravity"]),
+        steps=steps,
+    )
+    timing = peer_files.run(["liggghts"], text, folder, "LIGGGHTS")
+    return dict(wall=timing["wall"], cpu=timing["cpu"], energy=timing["slide"] + timing["turn"])
