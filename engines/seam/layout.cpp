@@ -337,8 +337,17 @@ private:
 		flag("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic));
 		points_to("Scene.bodies", scene, offsetof(yade::Scene, bodies), "vtable for yade::BodyContainer");
 		points_to("Scene.interactions", scene, offsetof(yade::Scene, interactions), "vtable for yade::InteractionContainer");
+		points_to("Scene.cell", scene, offsetof(yade::Scene, cell), "vtable for yade::Cell");
+		cell();
 		engine_list();
 		forces(scene);
+	}
+	void cell()
+	{
+		py::object periodic = make("Cell");
+		const Real edges[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
+		const py::object matrix = eigen_.attr("Matrix3")(edges[0], 0, 0, 0, edges[4], 0, 0, 0, edges[8]);
+		attribute("Cell", "hSize", periodic, offsetof(yade::Cell, hSize), matrix, edges);
 	}
 	void points_to(const string& member, const py::object& object, std::size_t offset, const string& vtable)
 	{

@@ -262,6 +262,14 @@ public:
 
 class InteractionContainer;
 
+/// The periodic cell.
+class Cell : public Serializable {
+	char transformations_[712];
+
+public:
+	Eigen::Matrix<Real, 3, 3> hSize;  ///< columns are the edges
+};
+
 class Scene : public Serializable {
 	int host_name_max_;
 
@@ -294,6 +302,12 @@ private:
 public:
 	shared_ptr<BodyContainer> bodies;
 	shared_ptr<InteractionContainer> interactions;
+
+private:
+	char energy_materials_bound_[56];
+
+public:
+	shared_ptr<Cell> cell;
 };
 
 /// What dispatchers call for a pair of types.
