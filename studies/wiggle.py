@@ -170,6 +170,7 @@ def run(p, folder):
     vertices = check_room(p, outline)
     ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
     check_period(p, dt)
+    progress.require_feasible(p.time / dt)
     if folder.resumed:
         stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
         scene.load(folder.resumed["folder"] / CHECKPOINT)

@@ -1,4 +1,4 @@
-"""One file for a scene on GrainLoop: continued anywhere it gives the bits of a run never stopped, or is refused with the reason."""
+"""One file for a scene on GrainLoop: it continues to the bits of a run never stopped, or is refused with the reason."""
 
 import disks
 import numpy as np
