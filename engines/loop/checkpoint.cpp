@@ -123,7 +123,7 @@ void Stepper::visit_state(Visitor&& visit, Self& s)
 {
 	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
 	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.guards);
-	visit(s.travelled), visit(s.allowed), visit(s.selection_due);
+	visit(s.travelled), visit(s.allowed), visit(s.pace), visit(s.selection_due);
 	visit(s.wall_touches), visit(s.moved_near_walls);
 }
 
