@@ -41,6 +41,7 @@ TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
 SAMPLES_PER_PERIOD = 40
 SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
 CHECKPOINT_SECONDS = 60
+CHECKPOINT = "scene.checkpoint"
 
 
 class WiggleParameters(StudyParameters):
@@ -169,9 +170,10 @@ def run(p, folder):
     vertices = check_room(p, outline)
     ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
     check_period(p, dt)
+    progress.require_feasible(p.time / dt)
     if folder.resumed:
         stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
-        scene.load(folder.resumed["folder"])
+        scene.load(folder.resumed["folder"] / CHECKPOINT)
     else:
         stage = build(p, grains, dt, clump, vertices, outline.area)
     folder.note(dt=dt, dt_over_critical=ratio, n_grains=stage["grains"])
@@ -245,7 +247,7 @@ def record(p, folder, stage):
             folder.frame(t, *scene.picture(ids, base, stage["body"]))
 
     def save(place):
-        scene.save(place)
+        scene.save(place / CHECKPOINT)
         np.save(place / "track.npy", track)
 
     def after_block(done):

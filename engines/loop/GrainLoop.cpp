@@ -1,24 +1,24 @@
 /// GrainLoop: takes YADE's disks, steps them, and keeps the driven bodies true at every step.
 #include "engines/loop/GrainLoop.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "engines/loop/checkpoint.hpp"
 
 namespace graindrive {
 
-const char* const GrainLoop::documentation = "Collider, contact law and integrator in one, for disks in the plane z = const: the "
-											 "same physics as YADE's loop with the Law2_ functor\n"
-											 "of the same name, many times faster.\n\n"
-											 "Stands last in O.engines, after measures and drives: O.engines = "
-											 "[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
-											 "Clumps, and disks that are driven, partly blocked, large or `watched`, are written "
-											 "to YADE at every step; all others at the end of\n"
-											 "O.run, every `syncEvery` steps and by sync(). What Python writes into a free disk "
-											 "is seen after read(). Orientations of free disks\n"
-											 "are not kept. Raises ValueError for shapes other than disks, a time step above the "
-											 "critical one and numbers out of range; a guard\n"
-											 "stops the run where grains overlap by more than `largestOverlap` of a radius.";
+const char* const GrainLoop::documentation =
+	"Collider, contact law and integrator in one, for disks in the plane z = const: the "
+	"same physics as YADE's loop with the Law2_ functor\n"
+	"of the same name, many times faster.\n\n"
+	"Stands last in O.engines, after measures and drives: O.engines = "
+	"[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
+	"Clumps, and disks that are driven, partly blocked, large or `watched`, are written "
+	"to YADE at every step; all others at the end of\n"
+	"O.run, every `syncEvery` steps and by sync(). What Python writes into a free disk "
+	"is seen after read(). Orientations of free disks\n"
+	"are not kept. Raises ValueError for shapes other than disks, a time step above the "
+	"critical one and numbers out of range; a guard\n"
+	"stops the run where grains overlap by more than `largestOverlap` of a radius or leave the box (see `bounds`).";
 
 namespace {
 
@@ -42,6 +42,7 @@ void GrainLoop::check() const
 		gravity.allFinite() && gravity[2] == 0, "GrainLoop.gravity must be finite and in the plane, 0 in z", gravity.transpose());
 	require(std::isfinite(normalStiffness + tangentialStiffness + normalDamping + tangentialDamping + friction),
 		"GrainLoop's stiffnesses, dampings and friction must be finite", normalStiffness);
+	require(std::isfinite(young), "GrainLoop.young must be finite", young);
 	require(std::isfinite(skin) && skin >= 0, "GrainLoop.skin must be finite and not negative", skin);
 	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
 	require(periods.allFinite() && periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0,
@@ -55,8 +56,15 @@ void GrainLoop::check() const
 	require(wallSettings.size() % numbers_per_wall == 0, "GrainLoop.wallSettings must hold nine numbers a wall; use setWall",
 		wallSettings.size());
 	require(wallSprings.size() % 3 == 0, "GrainLoop.wallSprings must hold three numbers a contact", wallSprings.size());
+	require(bounds.empty() || bounds.size() == 4, "GrainLoop.bounds must be four numbers, xLow, yLow, xHigh, yHigh, or none",
+		bounds.size());
+	require(std::all_of(bounds.begin(), bounds.end(), [](Real b) { return std::isfinite(b); }),
+		"GrainLoop.bounds must be finite; equal numbers leave an axis without bound", "one that is not");
+	require(bounds.empty() || (bounds[0] <= bounds[2] && bounds[1] <= bounds[3]),
+		"GrainLoop.bounds must be xLow, yLow, xHigh, yHigh with low <= high", "the other order");
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
 	contact_law();
+	laws::hertz_restitution(young, poisson, restitution, friction);  // their own checks, whatever the law in use
 }
 
 loop::ContactLaw GrainLoop::contact_law() const
@@ -83,9 +91,7 @@ loop::Scene GrainLoop::settings() const
 void GrainLoop::build()
 {
 	loop::Scene s = settings();
-	if (scene->isPeriodic && periods.isZero(0))
-		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
-									"e.g. periods=(O.cell.size[0], 0, 0)");
+	require_periods();
 	require_alone();
 	s.walls = walls();
 	s.target_area_fraction = targetAreaFraction;
@@ -103,6 +109,31 @@ void GrainLoop::build()
 	stepper_->track_energy(trackEnergy);
 	bring_walls();
 	read_from_ = scene;
+	stepper_->speak_of(map_.grain_id, scene->iter);
+}
+
+/// A cell that is long on purpose leaves an axis free; one that repeats must do so with YADE's own length.
+void GrainLoop::require_periods() const
+{
+	if (!scene->isPeriodic) return;
+	if (periods.isZero(0))
+		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
+									"e.g. periods=(O.cell.size[0], 0, 0)");
+	for (int axis = 0; axis < 2; ++axis) {
+		const Real period = periods[axis], edge = scene->cell->hSize(axis, axis);
+		if (period == 0 || std::abs(period - edge) <= 1e-12 * edge) continue;
+		throw std::invalid_argument(std::string("GrainLoop: the period in ") + "xy"[axis] + " is " + std::to_string(period) +
+									", O.cell repeats after " + std::to_string(edge) +
+									"; make them equal (O.cell.setBox, or periods), or 0 for an axis that does not repeat");
+	}
+}
+
+void GrainLoop::bring_guards()
+{
+	loop::Guards& guards = stepper_->guarding();
+	guards.largest_overlap = largestOverlap;
+	guards.bounded = !bounds.empty();
+	if (guards.bounded) guards.x_low = bounds[0], guards.y_low = bounds[1], guards.x_high = bounds[2], guards.y_high = bounds[3];
 }
 
 loop::Stepper& GrainLoop::stepper()
@@ -112,7 +143,7 @@ loop::Stepper& GrainLoop::stepper()
 	if (map_.known_bodies != scene->bodies->size())
 		throw std::runtime_error(
 			"GrainLoop: bodies were added to or removed from O.bodies; call sync() before and read() after such a change");
-	stepper_->guarding().largest_overlap = largestOverlap;
+	bring_guards();
 	stepper_->target_area_fraction() = targetAreaFraction;
 	if (!stepper_->step_under_way()) stepper_->track_energy(trackEnergy);
 	if (stepper_->settings().dt != scene->dt) stepper_->set_time_step(scene->dt);
@@ -146,22 +177,34 @@ void GrainLoop::require_alone() const
 	}
 }
 
+/// Does the work; if a guard trips, everyone can see in O.bodies what went wrong.
+template <class Work>
+void GrainLoop::guarded(Work work)
+{
+	try {
+		work();
+	} catch (...) {
+		write_bodies();
+		sync();
+		throw;
+	}
+}
+
+void GrainLoop::compute_body_forces()
+{
+	guarded([&] { stepper_->compute_body_forces(); });
+}
+
 void GrainLoop::action()
 {
 	stepper();
 	const bool look_at_all = scene->stopAtIter != run_end_ || scene->iter % 100 == 0;
 	require_bodies(look_at_all);
-	stepper_->compute_body_forces();
+	compute_body_forces();
 	if (look_at_all) release_what_moves();
 	run_end_ = scene->stopAtIter;
 	follow_bodies();
-	try {
-		stepper().step(1);
-	} catch (...) {
-		write_bodies();  // let everyone see what went wrong
-		sync();
-		throw;
-	}
+	guarded([&] { stepper().step(1); });
 	write_bodies();
 	if (last_step_of_run() || (syncEvery > 0 && (scene->iter + 1) % syncEvery == 0)) sync();
 }
@@ -180,7 +223,7 @@ void GrainLoop::release_what_moves()
 	if (!moves) return;
 	sync();
 	build();
-	stepper_->compute_body_forces();
+	compute_body_forces();
 }
 
 void GrainLoop::follow_bodies()
@@ -245,7 +288,7 @@ int GrainLoop::body_index(int id)
 		sync();
 		build();
 	}
-	stepper_->compute_body_forces();
+	compute_body_forces();
 	return map_.body_of_id[id] >= 0 ? map_.body_of_id[id] : stepper_->settings().grains[map_.grain_of_id[id]].body;
 }
 
@@ -285,37 +328,6 @@ Wrench GrainLoop::wrench_on(int id)
 		sum.torque += c.lever.cross(c.normal_force + c.tangential_force);
 	}
 	return sum;
-}
-
-void GrainLoop::save_checkpoint(const std::string& path)
-{
-	loop::Packer ids;
-	ids(stepper().settings().threads);
-	ids(map_.grain_id), ids(map_.grain_of_id), ids(map_.body_id), ids(map_.body_of_id), ids(map_.known_bodies);
-	stepper().save(path, ids.bytes);
-}
-
-void GrainLoop::restore_checkpoint(const std::string& path)
-{
-	if (!scene) throw std::runtime_error("GrainLoop is in no scene yet; put it into O.engines and run a step first");
-	std::string ids;
-	auto restored = loop::Stepper::restore(path, threads, &ids);
-	loop::Unpacker unpack(ids);
-	loop::YadeBodies map;
-	int saved_threads = 0;
-	unpack(saved_threads);
-	unpack(map.grain_id), unpack(map.grain_of_id), unpack(map.body_id), unpack(map.body_of_id), unpack(map.known_bodies);
-	if (map.known_bodies != scene->bodies->size())
-		throw std::runtime_error("checkpoint " + path + ": was written with " + std::to_string(map.known_bodies) +
-								 " bodies, the scene has " + std::to_string(scene->bodies->size()) +
-								 "; build the same scene first");
-	stepper_ = std::move(restored);
-	map_ = map;
-	read_from_ = scene;
-	trackEnergy = stepper_->energy_ledger() != nullptr;
-	targetAreaFraction = stepper_->target_area_fraction();
-	write_bodies();
-	sync();
 }
 
 }  // namespace graindrive

@@ -34,6 +34,10 @@ public:
 		visit("threads", &Self::threads, "number of threads; results have the same bits for any");
 		visit("skin", &Self::skin, "how far neighbours are listed [m]; 0 lets the loop choose");
 		visit("largestOverlap", &Self::largestOverlap, "overlap that stops the run [smaller radius]");
+		visit("bounds", &Self::bounds,
+			"xLow, yLow, xHigh, yHigh [m]: a centre beyond stops the run; equal numbers: no bound along that axis. By default a "
+			"grain is\n"
+			"lost three diameters below the last frozen or driven disk, where gravity pulls. Walls bound grains in any case");
 		visit("watched", &Self::watched,
 			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
 		visit(
@@ -63,8 +67,13 @@ public:
 	void begin_on_step();
 	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
 	void read();
-	void save_checkpoint(const std::string& path);
+	/// Writes loop, bodies and the engines of O.engines that are ours into one file; `saved_scene` is what O.save wrote, or nothing.
+	void save_checkpoint(const std::string& path, const std::string& saved_scene);
+	/// Goes on from such a file in the same scene, built anew or loaded. Changes nothing where it refuses the file.
+	/// @throws std::runtime_error naming the file and what is wrong with it, or what of the scene does not fit
 	void restore_checkpoint(const std::string& path);
+	/// What O.save wrote when the file was made; empty if nothing.
+	static std::string saved_scene(const std::string& path);
 	/// Adds a flat wall or changes the one on its side.
 	void set_wall(const loop::Wall& wall);
 	void remove_wall(loop::Side side);
@@ -82,7 +91,7 @@ public:
 	int threads = 1;
 	long syncEvery = 0;
 	std::vector<int> watched;
-	std::vector<Real> springs, loads, wallSettings, wallSprings;
+	std::vector<Real> springs, loads, wallSettings, wallSprings, bounds;
 	Real targetAreaFraction = 0;
 	bool trackEnergy = false;
 
@@ -96,10 +105,15 @@ private:
 	loop::ContactLaw contact_law() const;
 	loop::Scene settings() const;
 	void build();
+	template <class Work>
+	void guarded(Work work);
+	void compute_body_forces();
 	void follow_bodies();
 	void keep_walls();
 	void bring_walls();
 	void bring_loads();
+	void bring_guards();
+	void require_periods() const;
 	void write_bodies();
 	void release_what_moves();
 	bool last_step_of_run() const;

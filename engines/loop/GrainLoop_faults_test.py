@@ -100,3 +100,65 @@ def test_a_drive_on_a_clumps_member_is_refused(bed):
     O.engines = [drive] + O.engines
     with pytest.raises(RuntimeError, match=f"member of clump {clump}"):
         drive()
+
+
+def test_a_grain_that_falls_past_the_base_ends_the_run_with_its_id_and_place(bed):
+    lost = bed[1][-1]  # beside the base
+    O.bodies[lost].state.vel = (0, -50, 0)
+    with pytest.raises(RuntimeError, match=f"grain {lost} at .* has left the box") as caught:
+        O.run(10_000, True)
+    assert f"step {O.iter}: " in str(caught.value)
+    assert O.bodies[lost].state.pos[1] < -3.5  # three diameters below the base, and synced
+
+
+def test_a_guard_that_trips_in_a_drive_shows_the_grains_too(bed):
+    lost = bed[1][-1]
+    O.bodies[lost].state.vel = (0, -50, 0)
+    O.engines = [OscillationDrive(body=bed[1][0], amplitude=0, period=1)] + O.engines
+    with pytest.raises(RuntimeError, match="has left the box"):
+        O.run(10_000, True)
+    assert O.bodies[lost].state.pos[1] < -3.5
+
+
+def test_bounds_let_grains_fall_and_stop_those_that_leave_them(bed):
+    loop = O.engines[0]
+    O.bodies[bed[1][-1]].state.vel = (0, -50, 0)
+    loop.bounds = [0, 0, 0, 0]
+    O.run(2500, True)
+    assert O.bodies[bed[1][-1]].state.pos[1] < -7
+    loop.bounds = [-1, -5, 10, 10]
+    with pytest.raises(RuntimeError, match="y is below -5, the bounds that were set"):
+        step()
+
+
+@pytest.mark.parametrize("bad", [[1, 2, 3], [0, 0, -1, 5], [0, 0, math.inf, 1]])
+def test_bounds_that_are_none_are_refused(bad):
+    with pytest.raises(ValueError, match="GrainLoop.bounds must be"):
+        GrainLoop(bounds=bad)
+
+
+@pytest.mark.parametrize("periods", [(9, 0, 0), (10, 21, 0)])
+def test_periods_that_contradict_the_cell_are_refused(periods):
+    scene.start(10, 5)  # y of the cell is longer than the bed on purpose, 30
+    scene.add_disks([2], [2], [0.5], 1.0)
+    O.engines = [GrainLoop(periods=periods)]
+    O.dt = 1e-4
+    with pytest.raises(ValueError, match="O.cell repeats after"):
+        step()
+
+
+def test_periods_of_the_cell_are_taken_and_an_axis_may_be_left_free():
+    for periods in ((10, 0, 0), (0, 30, 0), (10, 30, 0)):
+        scene.start(10, 5)
+        scene.add_disks([2], [2], [0.5], 1.0)
+        O.engines = [GrainLoop(periods=periods)]
+        O.dt = 1e-4
+        O.run(3, True)
+        assert O.iter == 3
+
+
+@pytest.mark.parametrize("bad", [dict(young=-1), dict(poisson=0.6), dict(restitution=0), dict(young=math.inf)])
+@pytest.mark.parametrize("law", ["hertzHistory", "hertzRestitution", "springDashpot"])
+def test_material_numbers_are_checked_under_every_law(law, bad):
+    with pytest.raises(ValueError, match="must"):
+        GrainLoop(law=law, **bad)

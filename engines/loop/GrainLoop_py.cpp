@@ -2,6 +2,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/loop/GrainLoop.hpp"
+#include "engines/loop/checkpoint.hpp"
 #include "engines/seam/numpy_array.hpp"
 
 namespace graindrive {
@@ -23,6 +24,36 @@ np::ndarray ids(GrainLoop& loop)
 {
 	running(loop);
 	return array_of(loop.bodies().grain_id);
+}
+
+py::object bytes(const std::string& text)
+{
+	return py::object(py::handle<>(PyBytes_FromStringAndSize(text.data(), Py_ssize_t(text.size()))));
+}
+
+std::string text_of(const py::object& bytes)
+{
+	char* start = nullptr;
+	Py_ssize_t size = 0;
+	if (PyBytes_AsStringAndSize(bytes.ptr(), &start, &size) != 0) py::throw_error_already_set();
+	return { start, std::size_t(size) };
+}
+
+void checkpoint(GrainLoop& loop, const std::string& path, const py::object& saved_scene)
+{
+	running(loop);
+	loop.save_checkpoint(path, text_of(saved_scene));
+}
+
+py::object saved_scene(const std::string& path)
+{
+	const bool by_yade = loop::contents_of(path) == loop::Contents::yade_scene;
+	return bytes(by_yade ? loop::read_checkpoint(path, loop::Contents::yade_scene) : GrainLoop::saved_scene(path));
+}
+
+void seal_scene(const std::string& path, const py::object& saved_scene)
+{
+	loop::write_checkpoint(path, text_of(saved_scene), loop::Contents::yade_scene);
 }
 
 void restore(GrainLoop& loop, const std::string& path)
@@ -219,10 +250,23 @@ void bind_loop()
 	cls.def("contacts", contacts,
 		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).");
-	cls.def("checkpoint", &GrainLoop::save_checkpoint, (py::arg("path")),
-		"Write the loop's whole state into one file; a run restored from it goes on to the last bit.");
+	cls.def("checkpoint", checkpoint, (py::arg("path"), py::arg("saved_scene") = bytes("")),
+		"Write loop, bodies, drives and measures into one file; a run restored from it goes on to the last bit. Other engines\n"
+		"(PyRunner, recorders) are named in it, no more. saved_scene: bytes that O.save wrote, to go along; "
+		"graindrive.scene.save\n"
+		"does that. Raises RuntimeError with the system's reason if it cannot be written; an older file then stays.");
 	cls.def("restore", restore, (py::arg("path")),
-		"Go on from a checkpoint of the same scene; raises RuntimeError with the reason if the file cannot be trusted.");
+		"Go on from a checkpoint in the same scene, built anew or loaded: positions, velocities, O.iter and the state of drives "
+		"and\n"
+		"measures come from the file; threads, syncEvery, largestOverlap and bounds stay. Raises RuntimeError with the reason, "
+		"and\n"
+		"changes nothing, for a file that is damaged, cut, foreign or of another version, and for a scene with other bodies, "
+		"engines,\n"
+		"time step or law.");
+	py::def("saved_scene", saved_scene, (py::arg("path")),
+		"What O.save wrote when a checkpoint was made, as bytes; empty if nothing. Raises RuntimeError as GrainLoop.restore.");
+	py::def("seal_scene", seal_scene, (py::arg("path"), py::arg("saved_scene")),
+		"Write bytes that O.save made into a checkpoint of a scene on YADE's own loop: atomic, with checksum and version.");
 	cls.def("setWall", py::raw_function(set_wall, 2),
 		"setWall(side, position=, velocity= or pressure=, slide=, mass=, damping=, speedLimit=): a flat wall on the side "
 		"'x_low', 'x_high',\n"

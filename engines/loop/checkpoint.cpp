@@ -15,8 +15,10 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr char magic[] = "GRAINDRIVE-LOOP\n";
-constexpr std::size_t magic_length = sizeof magic - 1, header_length = magic_length + 3 * sizeof(std::uint64_t);
+constexpr std::size_t magic_length = 16, header_length = magic_length + 3 * sizeof(std::uint64_t);
+
+std::string magic(Contents contents) { return contents == Contents::loop ? "GRAINDRIVE-LOOP\n" : "GRAINDRIVE-YADE\n"; }
+const char* words(Contents contents) { return contents == Contents::loop ? "GrainLoop" : "a scene on YADE's loop"; }
 
 std::uint64_t fnv1a(const std::string& bytes)
 {
@@ -53,26 +55,40 @@ struct Temporary {
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, const std::string& body)
+void write_checkpoint(const std::string& path, const std::string& body, Contents contents)
 {
 	const std::uint64_t numbers[3] = { checkpoint_version, body.size(), fnv1a(body) };
 	Temporary beside{ path + ".part", ::open((path + ".part").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666) };
 	if (beside.file < 0) refuse(path, std::string("cannot be written: ") + std::strerror(errno));
-	write_all(beside.file,
-		std::string(magic, magic_length) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
+	write_all(beside.file, magic(contents) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
 	if (::fsync(beside.file) != 0) refuse(path, std::string("cannot be flushed to the disk: ") + std::strerror(errno));
 	if (std::rename(beside.path.c_str(), path.c_str()) != 0)
 		refuse(path, std::string("cannot be renamed into place: ") + std::strerror(errno));
 	beside.kept = true;
 }
 
-std::string read_checkpoint(const std::string& path)
+Contents contents_of(const std::string& path)
+{
+	std::string start(magic_length, 0);
+	std::ifstream(path, std::ios::binary).read(start.data(), magic_length);
+	return start == magic(Contents::yade_scene) ? Contents::yade_scene : Contents::loop;
+}
+
+std::string read_companion(const std::string& path)
+{
+	const std::string body = read_checkpoint(path);
+	std::string companion;
+	Unpacker{ body }(companion);
+	return companion;
+}
+
+std::string read_checkpoint(const std::string& path, Contents expected)
 {
 	std::ifstream in(path, std::ios::binary);
 	if (!in) refuse(path, std::string("cannot be opened: ") + std::strerror(errno));
 	const std::string all((std::istreambuf_iterator<char>(in)), {});
-	if (all.size() < header_length || all.compare(0, magic_length, magic, magic_length) != 0)
-		refuse(path, "is not a checkpoint of GrainLoop");
+	if (all.size() < header_length || all.compare(0, magic_length, magic(expected)) != 0)
+		refuse(path, std::string("is not a checkpoint of ") + words(expected));
 	std::uint64_t numbers[3];
 	std::memcpy(numbers, all.data() + magic_length, sizeof numbers);
 	if (numbers[0] != checkpoint_version)
@@ -107,7 +123,7 @@ void Stepper::visit_state(Visitor&& visit, Self& s)
 {
 	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
 	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.guards);
-	visit(s.travelled), visit(s.allowed), visit(s.selection_due);
+	visit(s.travelled), visit(s.allowed), visit(s.pace), visit(s.selection_due);
 	visit(s.wall_touches), visit(s.moved_near_walls);
 }
 
@@ -116,11 +132,11 @@ void Stepper::save(const std::string& path, const std::string& companion)
 	if (body_forces_known) throw std::runtime_error("checkpoint " + path + ": a step is under way; save between steps");
 	pairs.keep_slips();
 	Packer pack;
+	pack(companion);
 	visit_scene(pack, scene);
 	visit_state(pack, *this);
 	pack(bool(energy_ledger()));
 	if (energy_ledger()) energy_ledger()->visit(pack);
-	pack(companion);
 	write_checkpoint(path, pack.bytes);
 }
 
@@ -128,6 +144,9 @@ std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, 
 {
 	const std::string body = read_checkpoint(path);
 	Unpacker unpack(body);
+	std::string words;
+	unpack(words);
+	if (companion) *companion = words;
 	Scene scene;
 	visit_scene(unpack, scene);
 	scene.threads = threads;
@@ -137,9 +156,6 @@ std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, 
 	unpack(tracked);
 	stepper->track_energy(tracked);
 	if (tracked) stepper->energy_ledger()->visit(unpack);
-	std::string rest;
-	unpack(rest);
-	if (companion) *companion = rest;
 	stepper->resume();
 	return stepper;
 }

@@ -1,7 +1,8 @@
 /// One file that holds a running loop to the last bit, written whole or not at all.
 ///
-/// Layout: magic "GRAINDRIVE-LOOP\n", version, length of the body, FNV-1a checksum of the body (three 64-bit numbers of this machine's byte
-/// order), then the body: every array that decides how the run goes on, in the order in which it lies in memory.
+/// Layout: what it holds (16 letters), version, length of the body, FNV-1a checksum of the body (three 64-bit numbers of this machine's byte
+/// order), then the body. That of a loop: the caller's text, then every array that decides how the run goes on, in the order in which it
+/// lies in memory. That of a scene that runs on YADE's own loop: what O.save wrote.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -12,13 +13,22 @@
 
 namespace graindrive::loop {
 
-constexpr std::uint64_t checkpoint_version = 3;
+constexpr std::uint64_t checkpoint_version = 4;
+
+/// What a file holds, in the 16 letters that it begins with.
+enum class Contents { loop, yade_scene };
 
 /// Writes beside `path`, flushes to the disk, renames. @throws std::runtime_error naming the file and the system's reason
-void write_checkpoint(const std::string& path, const std::string& body);
+void write_checkpoint(const std::string& path, const std::string& body, Contents contents = Contents::loop);
 
 /// The body of a checkpoint. @throws std::runtime_error saying why a file is refused: missing, foreign, of another version, cut short, damaged
-std::string read_checkpoint(const std::string& path);
+std::string read_checkpoint(const std::string& path, Contents expected = Contents::loop);
+
+/// The caller's text of a loop's checkpoint, without the loop. @throws as read_checkpoint
+std::string read_companion(const std::string& path);
+
+/// What a file says that it holds; a loop where it says nothing that is known.
+Contents contents_of(const std::string& path);
 
 /// Plain numbers and arrays of them, one behind the other.
 class Packer {

@@ -1,9 +1,8 @@
-/// Checks of a scene before it starts, and of every pair while it runs.
+/// Checks of a scene before it starts.
 #include "engines/loop/guards.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "engines/loop/stepper.hpp"
@@ -11,15 +10,6 @@
 namespace graindrive::loop {
 
 namespace {
-
-template <class... Words>
-std::string sentence(const Words&... words)
-{
-	std::ostringstream out;
-	out.precision(6);
-	(out << ... << words);
-	return out.str();
-}
 
 template <class... Words>
 void require(bool holds, const Words&... words)
@@ -116,37 +106,6 @@ double critical_time_step(const Scene& scene, double overlap)
 			smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, mass / (1 + scene.spin_response)));
 	}
 	return smallest;
-}
-
-void Stepper::check_pairs() const
-{
-	const auto where = [&](std::uint32_t row) {
-		return sentence("grain ", index_of[row], " at (", rows[row].x, ", ", rows[row].y, "), velocity (", rows[row].vx, ", ",
-			rows[row].vy, ")");
-	};
-	for (std::uint32_t i = 0; i < n_free; ++i) {
-		const double sum = rows[i].x + rows[i].y + rows[i].vx + rows[i].vy + rows[i].surface_speed;
-		if (!std::isfinite(sum))
-			throw std::runtime_error(sentence("step ", steps, ": ", where(i),
-				" is not finite; likely the time step is too long or two grains were put into one place"));
-	}
-	const auto is_led = [&](std::uint32_t row) {  // where it goes is nobody's force's doing
-		if (row < n_free) return false;
-		const RigidBody& body = scene.bodies[members[row - n_free].body];
-		return !body.responds_x && !body.responds_y;
-	};
-	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
-		const Candidate& pair = pairs.candidates[c];
-		if (!pairs.place[c] || (is_led(pair.first) && is_led(pair.second))) continue;
-		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
-		const Separation d = separation(a, b, scene.box);
-		const double allowed = guards.largest_overlap * std::min(a.radius, b.radius), nearest = a.radius + b.radius - allowed;
-		if (d.x * d.x + d.y * d.y >= nearest * nearest) continue;
-		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y);
-		throw std::runtime_error(sentence("step ", steps, ": ", where(pair.first), " and ", where(pair.second), " overlap by ",
-			overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
-			"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
-	}
 }
 
 }  // namespace graindrive::loop

@@ -1,10 +1,21 @@
 /// Checks of a scene before it starts, and the words of a guard that trips while it runs.
 #pragma once
+#include <sstream>
 #include <string>
 
 #include "engines/loop/scene.hpp"
 
 namespace graindrive::loop {
+
+/// One text of words and numbers.
+template <class... Words>
+std::string sentence(const Words&... words)
+{
+	std::ostringstream out;
+	out.precision(6);
+	(out << ... << words);
+	return out.str();
+}
 
 /// @throws std::invalid_argument naming the rule, the number and the way out
 void check_scene(const Scene& scene);

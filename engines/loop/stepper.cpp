@@ -144,6 +144,7 @@ void Stepper::prepare()
 		if (selection_due) select();
 		if (!scene.walls.empty()) list_wall_touches();
 		if (guards.every > 0 && steps % guards.every == 0) {
+			check_box();
 			check_pairs();
 			check_walls_while_running();
 		}

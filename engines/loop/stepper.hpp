@@ -1,5 +1,6 @@
 /// The loop itself: search, pair forces and motion of a scene, step after step, the same bits on any number of threads.
 #pragma once
+#include <array>
 #include <exception>
 #include <memory>
 #include <string>
@@ -40,6 +41,8 @@ struct Touch {
 struct Guards {
 	long every = 100;              ///< steps between two looks at every pair
 	double largest_overlap = 0.1;  ///< of the smaller radius [-]
+	bool bounded = false;          ///< the caller says where grains may be, below; else a base says how far they may fall
+	double x_low = 0, y_low = 0, x_high = 0, y_high = 0;  ///< [m]; no bound along an axis where both are equal
 };
 
 class Stepper {
@@ -106,6 +109,8 @@ public:
 	long selections_done() const { return selections; }
 	std::size_t pairs_selected() const;
 	Guards& guarding() { return guards; }
+	/// What guards call the grains, by index, and the step that this loop began with; by default indices and 0.
+	void speak_of(std::vector<int> names, long first_step) { grain_names = std::move(names), spoken_first_step = first_step; }
 
 private:
 	Scene scene;
@@ -150,6 +155,8 @@ private:
 	std::vector<Spring> given_springs;  // until the first search
 	bool body_forces_known = false;
 	Guards guards;
+	std::vector<int> grain_names;  // none: indices
+	long spoken_first_step = 0;
 
 	template <class Visitor, class Self>
 	static void visit_state(Visitor&& visit, Self& stepper);
@@ -157,7 +164,18 @@ private:
 	void advance(int rank, long n);
 	bool one_step(int rank, bool early_pairs_done);
 	void compute_early_pairs(int rank);
+	struct Limit {
+		double at;  // of centres [m]
+		bool is_set;
+		std::string by;  // what sets it, for the message
+		std::string cause;
+	};
+	std::array<Limit, 4> limits() const;  // by Side
 	void check_pairs() const;
+	void check_box() const;
+	bool is_led(std::uint32_t row) const;
+	std::string introduce(std::uint32_t row) const;
+	std::string now() const;
 	void prepare();
 	void search();
 	void sort_rows();

@@ -262,9 +262,8 @@ void Stepper::check_walls_while_running() const
 		const double overlap = meeting(touch).contact.overlap;
 		if (led || !(overlap > guards.largest_overlap * row.radius)) continue;
 		std::ostringstream message;
-		message << "step " << steps << ": grain " << touch.grain << " at (" << row.x << ", " << row.y << ") overlaps wall "
-				<< name_of(scene.walls[touch.wall].side) << " by " << overlap / row.radius << " of its radius, more than "
-				<< guards.largest_overlap
+		message << now() << introduce(row_of[touch.grain]) << " overlaps wall " << name_of(scene.walls[touch.wall].side) << " by "
+				<< overlap / row.radius << " of its radius, more than " << guards.largest_overlap
 				<< "; likely grains too soft for their speed or load, a wall too fast or light, or grains that began beyond it";
 		throw std::runtime_error(message.str());
 	}

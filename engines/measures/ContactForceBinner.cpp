@@ -34,7 +34,7 @@ void ContactForceBinner::check() const
 void ContactForceBinner::callPostLoad()
 {
 	check();
-	sample_.assign(row_size(), 0);
+	if (sample_.size() != row_size()) sample_.assign(row_size(), 0);
 }
 
 void ContactForceBinner::clear()

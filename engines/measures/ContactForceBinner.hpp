@@ -32,6 +32,8 @@ public:
 		visit("samples", &Self::samples, "number of samples so far");
 		visit("meanData", &Self::meanData, "running means, for save and load");
 		visit("squaresData", &Self::squaresData, "running sums of squared deviations, for save and load");
+		visit("sampleData", &Self::sample_, "the last sample, for save and load");
+		visit("zeroDirection", &Self::last_direction_, "direction that angle 0 had last; 0 before the first sample");
 	}
 	void check() const;
 	void callPostLoad() override;

@@ -344,12 +344,10 @@ private:
 	}
 	void cell()
 	{
-#ifndef GRAINDRIVE_YADE_HEADERS  // there it is private
-		py::object cell = make("Cell");
-		const Real edges[3] = { next(), next(), next() };
-		cell.attr("setBox")(edges[0], edges[1], edges[2]);
-		holds("Cell._size", cell, offsetof(yade::Cell, _size), raw(edges));
-#endif
+		py::object periodic = make("Cell");
+		const Real edges[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
+		const py::object matrix = eigen_.attr("Matrix3")(edges[0], 0, 0, 0, edges[4], 0, 0, 0, edges[8]);
+		attribute("Cell", "hSize", periodic, offsetof(yade::Cell, hSize), matrix, edges);
 	}
 	void points_to(const string& member, const py::object& object, std::size_t offset, const string& vtable)
 	{

@@ -70,10 +70,50 @@ inline const char* base_name(const yade::LawFunctor*) { return "LawFunctor"; }
 inline const char* base_name(const yade::IPhysFunctor*) { return "IPhysFunctor"; }
 inline const char* base_name(const yade::FrictPhys*) { return "FrictPhys"; }
 
+/// An engine whose attributes a checkpoint keeps, to the last bit.
+class Stateful {
+public:
+	virtual ~Stateful() = default;
+	virtual std::string attribute_names() const = 0;
+	virtual std::string packed() const = 0;
+	virtual void unpack(const std::string& bytes) = 0;
+};
+
+/// Engines have that, functors and what they make have not: they are too many, and YADE's own archives keep them.
+template <class Self, class Base>
+class Kept : public Base {
+};
+
+template <class Self>
+class Kept<Self, yade::Engine> : public yade::Engine, public Stateful {
+	static constexpr auto plain = boost::archive::no_header | boost::archive::no_codecvt;
+
+public:
+	std::string attribute_names() const override
+	{
+		std::string names;
+		Self::attributes([&](const char* name, auto, const char*) { names += std::string(names.empty() ? "" : ", ") + name; });
+		return names;
+	}
+	std::string packed() const override
+	{
+		std::ostringstream bytes;
+		boost::archive::binary_oarchive archive(bytes, plain);
+		const_cast<Self&>(static_cast<const Self&>(*this)).serialize(archive, 0);  // boost's serialize reads and writes alike
+		return bytes.str();
+	}
+	void unpack(const std::string& bytes) override
+	{
+		std::istringstream from(bytes);
+		boost::archive::binary_iarchive archive(from, plain);
+		static_cast<Self&>(*this).serialize(archive, 0);
+	}
+};
+
 }  // namespace seam
 
 template <class Self, class Base = yade::Engine>
-class Registered : public Base {
+class Registered : public seam::Kept<Self, Base> {
 public:
 	std::string getClassName() const override { return Self::class_name; }
 	int getBaseClassNumber() const override { return 1; }

@@ -22,7 +22,7 @@ void SceneGrains::look(SceneView& view, bool with_contacts)
 {
 	view.grains.clear();
 	view.contacts.clear();
-	view.periods = scene_->isPeriodic ? scene_->cell->getSize() : Vector3r(Vector3r::Zero());
+	view.periods = scene_->isPeriodic ? Vector3r(scene_->cell->hSize.colwise().norm()) : Vector3r(Vector3r::Zero());
 	add_grains(view);
 	if (!with_contacts) return;
 	for (std::size_t id = 0; id < scene_->bodies->size(); ++id) {

@@ -264,11 +264,10 @@ class InteractionContainer;
 
 /// The periodic cell.
 class Cell : public Serializable {
-	char transformations_[216];
+	char transformations_[712];
 
 public:
-	Vector3r _size;
-	const Vector3r& getSize() const { return _size; }  ///< lengths of its edges [m]
+	Eigen::Matrix<Real, 3, 3> hSize;  ///< columns are the edges
 };
 
 class Scene : public Serializable {

@@ -11,7 +11,7 @@ import threading
 import traceback
 from pathlib import Path
 
-from . import signals
+from . import run_data, signals
 from .cache import cache_folder
 from .errors import Interrupted, UsageError, one_line
 from .run_folder import RunFolder
@@ -37,8 +37,17 @@ def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
         close_servers()
     code = guarded(lambda: carry_out(study, p, name, figure), name)
     if batch or code:
-        sys.stdout.flush()
-        sys.exit(code)
+        end(code)
+
+
+def end(code):
+    """End the program with this exit code, also where HDF5 could not write out a file: its own end would crash on that."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    if run_data.files_stay_open():
+        remove_yades_folder()
+        os._exit(code)
+    sys.exit(code)
 
 
 def carry_out(study, p, name, figure):
@@ -132,6 +141,12 @@ def socket_table(name):
 def leave_nothing_behind():
     """Have YADE's folder below /tmp removed at exit."""
     if "yade" in sys.modules:
+        atexit.register(remove_yades_folder)
+
+
+def remove_yades_folder():
+    """Remove YADE's folder below /tmp, if YADE runs in this process."""
+    if "yade" in sys.modules:
         from yade import O
 
-        atexit.register(shutil.rmtree, os.path.dirname(O.tmpFilename()), ignore_errors=True)
+        shutil.rmtree(os.path.dirname(O.tmpFilename()), ignore_errors=True)

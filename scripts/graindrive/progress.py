@@ -1,11 +1,13 @@
 """Drive YADE's loop in blocks of steps, showing rate and time left, open to signals and to engines' errors."""
 
+import atexit
 import sys
 import threading
 import time
 from dataclasses import dataclass
 
 from . import signals
+from .errors import UsageError
 
 
 @dataclass(frozen=True)
@@ -22,14 +24,27 @@ class Timing:
         return self.grains * self.steps / self.seconds if self.seconds > 0 else float("nan")
 
 
+MOST_STEPS = 1e10  # the papers' longest runs take 1e8
+
+
+def require_feasible(steps):
+    """UsageError for a run that would not end in a lifetime, saying how many steps it would take and the way out."""
+    if not steps <= MOST_STEPS:
+        raise UsageError(
+            f"the run would take {steps:.3g} steps, more than {MOST_STEPS:.0e}; raise dt_factor or shorten the run"
+        )
+
+
 def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run"):
     """Run YADE `total_steps` steps, calling `on_block(steps_done)` after every `block` steps; return the `Timing`.
 
     A true answer of `on_block` ends the run early. `grains` is the number of grains [-] that the rate counts. Raises
-    what an engine raised (RuntimeError), `Interrupted` on a signal, RuntimeError if something else paused the loop.
+    what an engine raised (RuntimeError), `Interrupted` on a signal, RuntimeError if something else paused the loop,
+    UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
         raise ValueError(f"steps must be >= 0 and block >= 1, got {total_steps} and {block}")
+    require_feasible(total_steps)
     done, seconds = 0, 0.0
     with ProgressLine(total_steps, grains, label) as line:
         while done < total_steps:
@@ -123,6 +138,11 @@ class LoopListener:
         except Exception as error:
             self.error = error
 
+    def leave(self):
+        """Let the wait end: it sleeps for 40 ms, and Python would abort if it ended in that time."""
+        if self.thread is not None:
+            self.thread.join(timeout=1)
+
     def raise_what_it_heard(self):
         """Raise what an engine threw, if that was heard."""
         self.thread.join()
@@ -131,6 +151,7 @@ class LoopListener:
 
 
 _listener = LoopListener()
+atexit.register(_listener.leave)
 
 
 class ProgressLine:

@@ -15,6 +15,8 @@ import numpy as np
 CHUNK_ROWS = 4096
 FLUSH_SECONDS = 1.0
 
+unwritten = []  # writers whose file could not be closed: HDF5 crashes when such a file is let go of
+
 
 class SeriesWriter:
     """Appends rows to the equally long time series of one file.
@@ -64,8 +66,17 @@ class SeriesWriter:
     def close(self):
         """Flush and close; a second call does nothing."""
         if self.file:
-            self.flush()
-            self.file.close()
+            try:
+                self.flush()
+                self.file.close()
+            except Exception:
+                unwritten.append(self)
+                raise
+
+
+def files_stay_open():
+    """True if HDF5 holds a file that it could not close, as on a full disk."""
+    return bool(unwritten) or h5py.h5f.get_obj_count(h5py.h5f.OBJ_ALL, h5py.h5f.OBJ_FILE) > 0
 
 
 def write_item(folder, name, arrays, attributes=None):

@@ -1,12 +1,15 @@
 """Two-dimensional scenes of disks in YADE: grains, a frozen base, a clump of beads, and the loop that moves them."""
 
 import math
+import tempfile
+from pathlib import Path
 
 import numpy as np
 
 from . import engines, grain_loop
 from .errors import UsageError
 
+YADES_FILE = "scene.yade.gz"  # the ending tells YADE the format
 IN_PLANE = "zXY"  # degrees of freedom that a two-dimensional scene blocks
 
 
@@ -123,25 +126,48 @@ def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
     return dt / critical
 
 
-def save(folder):
-    """Write the whole scene, engines and springs included, into `folder` for `load`."""
-    from yade import O
+def save(path):
+    """Write the whole scene, engines and springs included, into one file for `load`: atomic, with checksum and version.
 
+    RuntimeError with the system's reason if it cannot be written; an older file then stays.
+    """
     loop = fast_loop()
     if loop:
         loop.sync()
-        loop.checkpoint(str(folder / "loop.bin"))
-    O.save(str(folder / "scene.yade.gz"))
+    saved = saved_by_yade()
+    if loop:
+        loop.checkpoint(str(path), saved)
+    else:
+        engines.seal_scene(str(path), saved)
 
 
-def load(folder):
-    """Go on from a scene that `save` wrote; GrainLoop to the last bit, YADE's loop to round-off."""
+def load(path):
+    """Go on from a scene that `save` wrote; GrainLoop to the last bit, YADE's loop to round-off.
+
+    RuntimeError with the reason for a file that is damaged, cut, foreign or of another version.
+    """
     from yade import O
 
-    O.load(str(folder / "scene.yade.gz"))
+    saved = engines.saved_scene(str(path))
+    if not saved:
+        raise RuntimeError(f"checkpoint {path} holds no scene of YADE's; build the scene, then use GrainLoop.restore")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / YADES_FILE
+        file.write_bytes(saved)
+        O.load(str(file))
     loop = fast_loop()
     if loop:
-        loop.restore(str(folder / "loop.bin"))
+        loop.restore(str(path))
+
+
+def saved_by_yade():
+    """Return what O.save writes, as bytes."""
+    from yade import O
+
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / YADES_FILE
+        O.save(str(file), True)
+        return file.read_bytes()
 
 
 def rows_of(ids):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -37,9 +38,10 @@ class Place:
         for name in ("GRAINDRIVE_CACHE", "MPLCONFIGDIR", "YADE_BATCH", "DISPLAY"):
             self.environment.pop(name, None)
 
-    def start(self, *arguments, options=("-n", "-x"), **environment):
+    def start(self, *arguments, options=("-n", "-x"), preexec_fn=None, **environment):
         command = ["yade", *options, str(TOY), *arguments]
         pipes = dict(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        pipes.update(preexec_fn=preexec_fn)
         return subprocess.Popen(command, cwd=self.work, env={**self.environment, **environment}, **pipes)
 
     def run(self, *arguments, **options):
@@ -212,3 +214,14 @@ def test_batch_tables_run_rows_in_folders_of_their_own(place):
     assert result.returncode == 0 and result.stdout.count("exit status 0") == 2, result.stdout + result.stderr
     folders = [p.parent for p in place.work.glob("*/summary.json")]
     assert len(folders) == 2 and all("period" in folder.name for folder in folders)
+
+
+def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
+    def small_files():  # the system's own limit stands for the full disk: writing fails in the same places
+        resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
+
+    process = place.start(preexec_fn=small_files)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1, err[-2000:]
+    assert "toy_study: failed: " in err and "unfinished" in err
+    assert list((place.path / "tmp").iterdir()) == []

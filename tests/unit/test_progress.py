@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("yade")
 
+from graindrive.errors import UsageError  # noqa: E402
 from graindrive.progress import Timing, run_blocks  # noqa: E402
 
 
@@ -74,3 +75,9 @@ def test_ten_lines_where_nobody_watches(scene, capsys):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 10 and lines[0].startswith("settle:  10 %, ") and "M particle-steps/s" in lines[0]
     assert lines[-1].startswith("settle: 100 %") and lines[-1].endswith("0:00 left")
+
+
+def test_a_run_that_would_never_end_is_refused(scene):
+    with pytest.raises(UsageError, match="would take 2e\\+10 steps, more than 1e\\+10; raise dt_factor"):
+        run_blocks(20_000_000_000, 10)
+    assert scene.iter == 0

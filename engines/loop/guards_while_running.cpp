@@ -1,0 +1,109 @@
+/// Guards that look at every grain and pair from time to time: not finite, out of the box, overlapping too far.
+#include "engines/loop/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engines/loop/stepper.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double free_fall = 3;  // how far below a base a grain counts as lost [largest free diameter]
+constexpr Side sides[] = { Side::x_low, Side::x_high, Side::y_low, Side::y_high };
+
+bool is_across_x(Side side) { return side == Side::x_low || side == Side::x_high; }
+double outward(Side side) { return side == Side::x_low || side == Side::y_low ? -1 : 1; }
+
+}  // namespace
+
+std::string Stepper::now() const { return sentence("step ", spoken_first_step + steps, ": "); }
+
+std::string Stepper::introduce(std::uint32_t row) const
+{
+	const std::uint32_t index = index_of[row];
+	const long name = index < grain_names.size() ? grain_names[index] : long(index);
+	return sentence(
+		"grain ", name, " at (", rows[row].x, ", ", rows[row].y, "), velocity (", rows[row].vx, ", ", rows[row].vy, ")");
+}
+
+/// Where it goes is nobody's force's doing.
+bool Stepper::is_led(std::uint32_t row) const
+{
+	if (row < n_free) return false;
+	const RigidBody& body = scene.bodies[members[row - n_free].body];
+	return !body.responds_x && !body.responds_y;
+}
+
+/// Where the caller sets bounds, these; where gravity presses grains onto held ones, some diameters behind the last of those. A wall in any case.
+std::array<Stepper::Limit, 4> Stepper::limits() const
+{
+	std::array<Limit, 4> all{};
+	for (const Side side : sides) {
+		const bool x = is_across_x(side);
+		Limit& limit = all[int(side)];
+		if (x ? scene.box.periodic_x : scene.box.periodic_y) continue;
+		const bool is_down = (std::abs(scene.gravity_x) > std::abs(scene.gravity_y)) == x;  // the axis of the larger part
+		const double pull = is_down ? (x ? scene.gravity_x : scene.gravity_y) * outward(side) : 0;
+		if (guards.bounded) {
+			const double low = x ? guards.x_low : guards.y_low, high = x ? guards.x_high : guards.y_high;
+			limit = { outward(side) < 0 ? low : high, low < high, "the bounds that were set",
+				"wider bounds, if grains may be there" };
+		} else if (pull > 0) {
+			double last = -HUGE_VAL;  // outwards
+			for (std::uint32_t row = n_free; row < n_grains; ++row) {
+				const RigidBody& body = scene.bodies[members[row - n_free].body];
+				if (x ? body.responds_x : body.responds_y) continue;
+				last = std::max(last, outward(side) * (x ? rows[row].x : rows[row].y) + rows[row].radius);
+			}
+			limit = { outward(side) * (last + free_fall * 2 * largest_free_radius), last > -HUGE_VAL,
+				"three diameters behind the last grain that is held against gravity",
+				"a base without gaps, or bounds if grains may fall there" };
+		}
+	}
+	for (const Wall& wall : scene.walls)
+		all[int(wall.side)] = { wall.position, true, std::string("wall ") + name_of(wall.side), "a slower or heavier wall" };
+	return all;
+}
+
+void Stepper::check_box() const
+{
+	const auto limits = this->limits();
+	for (const Side side : sides) {
+		const Limit& limit = limits[int(side)];
+		if (!limit.is_set) continue;
+		for (std::uint32_t row = 0; row < n_grains; ++row) {
+			const double at = is_across_x(side) ? rows[row].x : rows[row].y;
+			if (!(outward(side) * (at - limit.at) > 0) || is_led(row)) continue;
+			throw std::runtime_error(sentence(now(), introduce(row), " has left the box: its ", is_across_x(side) ? "x" : "y",
+				outward(side) < 0 ? " is below " : " is above ", limit.at, ", ", limit.by,
+				"; likely it was pressed or thrown through: take stiffer grains, a shorter time step, ", limit.cause));
+		}
+	}
+}
+
+void Stepper::check_pairs() const
+{
+	for (std::uint32_t i = 0; i < n_free; ++i) {
+		const double sum = rows[i].x + rows[i].y + rows[i].vx + rows[i].vy + rows[i].surface_speed;
+		if (!std::isfinite(sum))
+			throw std::runtime_error(sentence(
+				now(), introduce(i), " is not finite; likely the time step is too long or two grains were put into one place"));
+	}
+	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
+		const Candidate& pair = pairs.candidates[c];
+		if (!pairs.place[c] || (is_led(pair.first) && is_led(pair.second))) continue;
+		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
+		const Separation d = separation(a, b, scene.box);
+		const double allowed = guards.largest_overlap * std::min(a.radius, b.radius), nearest = a.radius + b.radius - allowed;
+		if (d.x * d.x + d.y * d.y >= nearest * nearest) continue;
+		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y);
+		throw std::runtime_error(sentence(now(), introduce(pair.first), " and ", introduce(pair.second), " overlap by ",
+			overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
+			"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
+	}
+}
+
+}  // namespace graindrive::loop
