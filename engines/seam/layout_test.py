@@ -9,7 +9,7 @@ import pytest
 from graindrive import engines
 
 MEMBERS = engines.proven_members()
-STRUCTURES = {"Scene.bodies", "Scene.interactions", "Scene.engines", "Scene.forces"}  # recognised by what they point at
+STRUCTURES = {"Scene.bodies", "Scene.interactions", "Scene.cell", "Scene.engines", "Scene.forces"}  # recognised by what they point at
 SIZES = {name for name in MEMBERS if name.endswith(".size")}
 
 FACTS = {
