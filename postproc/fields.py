@@ -84,7 +84,8 @@ def read(run, name):
 def draw_map(axes, fields, name, phase=None, **options):
     """Draw a scalar field as squares of the averager's bins with a colour bar; return the mesh.
 
-    `options` go to pcolormesh: cmap, norm, vmin, vmax. Bins in which no grain was stay white.
+    `options` go to pcolormesh: cmap, norm, vmin, vmax. Bins in which no grain was stay white. Figures of several maps want
+    layout="compressed".
     """
     options = {"cmap": "YlGnBu", "rasterized": True, "shading": "nearest", **options}
     mesh = axes.pcolormesh(fields.x, fields.y, np.ma.masked_invalid(fields.map(name, phase)), **options)

@@ -8,25 +8,25 @@ namespace graindrive {
 const char* const FieldAverager::documentation =
 	"Area fraction, velocity, granular temperature, density and stress on a grid, averaged while the scene runs.\n\n"
 	"kernel='diskBin': exact area of grain and bin in common, velocities with rotation, one velocity for each grain in each bin: "
-    "the\n"
+	"the\n"
 	"mean over the common area (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian': exp(-r^2/w^2) cut at `cutoff` w and\n"
 	"normalised there (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001). kernel='sphere': averages in spheres, here disks, "
-    "of\n"
+	"of\n"
 	"radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the exact integral of the kernel along "
-    "the\n"
+	"the\n"
 	"branch vector, kinetic stress by the fluctuations about the mean over all samples; both positive in compression, pressure = "
-    "tr/2.\n\n"
+	"tr/2.\n\n"
 	"Grains are disks that are free in x, y and rotation, belong to no clump and are not `body`. All others (walls, driven "
-    "disks, beads\n"
+	"disks, beads\n"
 	"of an intruder) bound the grains: they have no part in area fraction, velocity and kinetic stress, and their contacts "
-    "count\n"
+	"count\n"
 	"from the grain's centre to the contact point (Weinhart, Thornton, Luding, Bokhove 2012, after Goldhirsch 2010).\n\n"
 	"Arrays have the shape (phases, ny, nx), (…, 2) for vectors, (…, 2, 2) for stress[a, b]: force along a, branch along b. A "
-    "sample\n"
+	"sample\n"
 	"at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the contacts and before drives and "
-    "the\n"
+	"the\n"
 	"integrator. Misleads where the window passes few grains: velocity is a mean over grains, not over samples. Changing what "
-    "decides\n"
+	"decides\n"
 	"the grid begins anew. Raises ValueError for a window, spacing, kernel or number out of range.";
 
 namespace {
@@ -62,7 +62,7 @@ void FieldAverager::check() const
 	const Real numbers = Real(phases) * Real(sums_in_a_phase());
 	require(numbers <= most_numbers,
 		"FieldAverager: phases, bins and what is summed (5 numbers, 14 with stress) must make at most 2e8 numbers; take larger "
-	    "bins",
+		"bins",
 		numbers);
 }
 

@@ -83,8 +83,8 @@ void bind_fields()
 	cls.add_property("velocity", velocity, "mean velocity [m/s], shape (phases, ny, nx, 2); nan where no grain was");
 	cls.add_property("temperature", numbers<&FieldMeans::temperature>,
 		"granular temperature <|v - <v>|^2>/2 [m^2/s^2], shape (phases, ny, nx); nan where no grain was");
-	cls.add_property(
-		"totalStress", stress<true, true>, "contact and kinetic stress [N/m], positive in compression, shape (phases, ny, nx, 2, 2)");
+	cls.add_property("totalStress", stress<true, true>,
+		"contact and kinetic stress [N/m], positive in compression, shape (phases, ny, nx, 2, 2)");
 	cls.add_property("contactStress", stress<true, false>, "stress carried by contacts [N/m], shape (phases, ny, nx, 2, 2)");
 	cls.add_property("kineticStress", stress<false, true>, "stress by fluctuations [N/m], shape (phases, ny, nx, 2, 2)");
 	cls.add_property("pressure", pressure, "half the trace of the stress [N/m], shape (phases, ny, nx)");
