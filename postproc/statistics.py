@@ -49,6 +49,37 @@ def block_mean(samples):
     return Mean(mean, float(errors[level]), 2**level, bool(passes.any()))
 
 
+def ratio_mean(numerator, denominator):
+    """Return the `Mean` of mean(numerator)/mean(denominator) of two series (n,) that are correlated with each other.
+
+    Delta method: to first order the ratio R deviates by the mean of (a_i - R b_i)/mean(b), whose error blocking gives. NaN
+    where the denominator's mean is 0.
+    """
+    a, b = np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
+    if b.mean() == 0:
+        return Mean(float("nan"), float("nan"), 1, False)
+    ratio = float(a.mean() / b.mean())
+    deviation = block_mean((a - ratio * b) / b.mean())
+    return Mean(ratio, deviation.error, deviation.block_length, deviation.resolved)
+
+
+def steady_start(samples, *, at_most=0.5):
+    """Return how many samples to leave out at the start of a series (n,) as its transient, up to `at_most` of them.
+
+    Marginal standard error rule (White 1997): k minimises sum_{i>=k} (x_i - mean_k)^2/(n - k)^2, here of means over
+    batches of n/100 samples or more, at least 5. It takes a slow drift over the entire series for the steady state.
+    """
+    x = np.asarray(samples, dtype=float)
+    batch = max(5, len(x) // 100)
+    means = x[: len(x) // batch * batch].reshape(-1, batch).mean(axis=1)
+    if len(means) < 4:
+        return 0
+    left = np.arange(len(means), 0, -1)
+    first, second = (np.cumsum((means - means.mean())[::-1] ** power)[::-1] for power in (1, 2))
+    rule = np.maximum(second - first**2 / left, 0) / left**2
+    return batch * int(np.argmin(rule[: int(at_most * len(means)) + 1]))
+
+
 def blocking_levels(x):
     """Return (n_k, σ_k², term of M_k) of all levels of pairwise averaging with at least two blocks."""
     counts, variances, terms = [], [], []
