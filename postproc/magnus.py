@@ -53,21 +53,12 @@ def draw_mean(axes, summary, name, colour):
 
 def draw_angles(axes, run):
     """Normal force, mobilised friction and contacts by angle from the velocity, with standard errors (Fig. 6)."""
-    found, mu = run.group("angular"), run.parameters["mu"]
+    found = run.group("angular")
     theta, normal = found["theta"] / np.pi, found["normal"]
     drag = run.summary["drag"]
     axes[0].errorbar(theta, normal / drag, found["normal_err"] / drag, color=BLUE, marker="o", markersize=2)
     axes[0].set_ylabel(r"$F_{N,\theta}/D$")
-    pressed = normal > 0.01 * normal.max() if mu > 0 else np.zeros(len(theta), bool)
-    limit = mu * normal[pressed]
-    axes[1].errorbar(
-        theta[pressed],
-        -found["tangential"][pressed] / limit,
-        found["tangential_err"][pressed] / limit,
-        color=VERMILLION,
-        marker="o",
-        markersize=2,
-    )
+    axes[1].errorbar(theta, -found["mobilised"], found["mobilised_err"], color=VERMILLION, marker="o", markersize=2)
     axes[1].axhline(0, color=GREY, linewidth=0.6)
     axes[1].set(ylabel=r"$-F_{T,\theta}/\mu F_{N,\theta}$", ylim=(-1.1, 1.1))
     contacts = run.summary["contacts"]

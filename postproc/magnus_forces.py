@@ -29,8 +29,8 @@ class SteadyState:
     """Means over the steady state: `start` [d] of travel, number of `blocks`, `summary` of quantities with errors.
 
     `angular` holds, by angle from the velocity, shape (bins,): theta [rad], and normal, tangential [N] (counter-clockwise),
-    contacts_by_angle, slipping_by_angle [-], each with its standard error NAME_err. `resolved` says whether the
-    series of L/D is long enough for its error to be believed.
+    contacts_by_angle, slipping_by_angle [-], mobilised = F_T/(mu F_N), each with its standard error NAME_err. `resolved`
+    says whether the series is steady and long enough for the error of L/D to be believed.
     """
 
     start: float
@@ -50,15 +50,15 @@ def drag_and_lift(series, spin_ratio):
 
 
 def steady_window(series, settle):
-    """Return the slice of the steady state: after `settle` [d] of travel and after what MSER cuts off drag and contacts."""
+    """Return (slice of the steady state, whether it is one): after `settle` [d] of travel, later if drag or contacts drift."""
     least = int(np.searchsorted(series["travel"], settle, side="right"))
-    starts = [steady_start(series[name][least:]) for name in ("fx", "contacts")]
-    return slice(least + max(starts), len(series["travel"]))
+    found = [steady_start(series[name][least:]) for name in ("fx", "contacts")]
+    return slice(least + max(cut for cut, _ in found), len(series["travel"])), all(steady for _, steady in found)
 
 
 def steady_state(series, settle, mu, spin_ratio):
     """Return the `SteadyState` of block means with the names of `UNITS` (n,) and `BY_ANGLE` (n, bins)."""
-    window = steady_window(series, settle)
+    window, steady = steady_window(series, settle)
     kept = {name: np.asarray(series[name])[window] for name in (*UNITS, *BY_ANGLE)}
     drag, lift = drag_and_lift(kept, spin_ratio)
     means = dict(drag=block_mean(drag), lift=block_mean(lift), contacts=block_mean(kept["contacts"]))
@@ -69,9 +69,9 @@ def steady_state(series, settle, mu, spin_ratio):
     for name, mean in means.items():
         summary.update({name: mean.value, f"{name}_err": mean.error})
     summary.update(fluctuations(kept), **models(summary, mu))
-    summary.update(steady_from=float(kept["travel"][0]), steady_travel=float(np.ptp(kept["travel"])))
-    angular = dict(theta=(angles_of(kept["normal"].shape[1]), "rad"), **by_angle(kept))
-    return SteadyState(summary["steady_from"], len(drag), means["lift_to_drag"].resolved, summary, angular)
+    summary.update(steady=int(steady), steady_from=float(kept["travel"][0]), steady_travel=float(np.ptp(kept["travel"])))
+    angular = dict(theta=(angles_of(kept["normal"].shape[1]), "rad"), **by_angle(kept, mu))
+    return SteadyState(summary["steady_from"], len(drag), steady and means["lift_to_drag"].resolved, summary, angular)
 
 
 def angles_of(bins):
@@ -105,11 +105,13 @@ def models(summary, mu):
     )
 
 
-def by_angle(kept):
-    """Return {name: (means by angle, unit)} and their errors {name_err: …}."""
-    found = {}
-    for name, unit in BY_ANGLE.items():
-        means = [block_mean(column) for column in kept[name].T]
-        found[name] = (np.array([m.value for m in means]), unit)
-        found[f"{name}_err"] = (np.array([m.error for m in means]), unit)
-    return found
+def by_angle(kept, mu):
+    """Return {name: (means by angle, unit)} and their errors {name_err: …}; mobilised is NaN where nothing pressed."""
+    found = {name: [block_mean(column) for column in kept[name].T] for name in BY_ANGLE}
+    found["mobilised"] = [ratio_mean(t, mu * n) for t, n in zip(kept["tangential"].T, kept["normal"].T)]
+    arrays = {}
+    for name, means in found.items():
+        unit = BY_ANGLE.get(name, "-")
+        arrays[name] = (np.array([m.value for m in means]), unit)
+        arrays[f"{name}_err"] = (np.array([m.error for m in means]), unit)
+    return arrays

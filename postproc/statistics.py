@@ -63,21 +63,24 @@ def ratio_mean(numerator, denominator):
     return Mean(ratio, deviation.error, deviation.block_length, deviation.resolved)
 
 
-def steady_start(samples, *, at_most=0.5):
-    """Return how many samples to leave out at the start of a series (n,) as its transient, up to `at_most` of them.
+def steady_start(samples, *, parts=20, at_most=0.5, deviations=3.0):
+    """Return (samples to leave out at the start of a series (n,) as its transient, whether what is left is steady).
 
-    Marginal standard error rule (White 1997): k minimises sum_{i>=k} (x_i - mean_k)^2/(n - k)^2, here of means over
-    batches of n/100 samples or more, at least 5. It takes a slow drift over the entire series for the steady state.
+    Geweke's test (1992): the means of the first fifth and of the last half of what is left must agree within so many
+    standard errors, by blocking; the first multiple of n/`parts` that passes is taken, up to `at_most` of the series. It
+    cuts nothing that noise explains, and takes a drift below that noise for the steady state.
     """
     x = np.asarray(samples, dtype=float)
-    batch = max(5, len(x) // 100)
-    means = x[: len(x) // batch * batch].reshape(-1, batch).mean(axis=1)
-    if len(means) < 4:
-        return 0
-    left = np.arange(len(means), 0, -1)
-    first, second = (np.cumsum((means - means.mean())[::-1] ** power)[::-1] for power in (1, 2))
-    rule = np.maximum(second - first**2 / left, 0) / left**2
-    return batch * int(np.argmin(rule[: int(at_most * len(means)) + 1]))
+    cuts = [k * len(x) // parts for k in range(int(at_most * parts) + 1)]
+    return next(((cut, True) for cut in cuts if halves_agree(x[cut:], deviations)), (cuts[-1], False))
+
+
+def halves_agree(x, deviations):
+    """True if the means of the first fifth and of the last half of (n,) samples agree; too few samples agree."""
+    if len(x) < 5 * FEWEST_BLOCKS:
+        return True
+    early, late = block_mean(x[: len(x) // 5]), block_mean(x[len(x) // 2 :])
+    return abs(early.value - late.value) <= deviations * np.hypot(early.error, late.error)
 
 
 def blocking_levels(x):

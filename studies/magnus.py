@@ -45,7 +45,7 @@ SAMPLE_EVERY = 10  # steps; a contact at 5 m/s lasts 60
 BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
 LOOK_EVERY = 50  # blocks between two looks at the error
 CLOSING_SPEED, REST_SPEED = 0.25, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
-PREPARATION_DAMPING = 20  # times gamma while a packing is made: grains without friction would take hours to come to rest
+PREPARATION_DAMPING = 10  # times gamma while a packing is made: grains without friction would take hours to come to rest
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 
 

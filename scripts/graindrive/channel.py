@@ -19,7 +19,7 @@ THINNED_FROM, INSERTED_BELOW = 0.78, 0.5  # the paper's bounds between its three
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 TOLERANCE = 1e-3  # of the area fraction
 DEEPEST_OVERLAP = 0.01  # [R] where closing walls count as jammed
-CLOSING_DEPTH = 0.1  # [R] of overlap for which the time step of the preparation is chosen
+CLOSING_DEPTH = 0.03  # [R] of overlap for which the time step of the preparation is chosen
 MOST_GRAINS = 10_000_000
 
 
@@ -169,7 +169,7 @@ def bring_together(recipe, walls, start):
     from yade import O
 
     way = (start - recipe.height) / 2
-    O.dt = 0.3 * recipe.material.critical_time_step(recipe.d_min / 2, CLOSING_DEPTH)
+    O.dt = 0.45 * recipe.material.critical_time_step(recipe.d_min / 2, CLOSING_DEPTH)
     steps = int(np.ceil(way / (recipe.closing_speed * O.dt)))
     speed = way / (steps * O.dt)
     drives = [
