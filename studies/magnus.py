@@ -29,7 +29,7 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import bodies, channel, engines, headless, intruder, recording, scene  # noqa: E402
+from graindrive import bodies, channel, engines, fields, headless, intruder, recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
@@ -44,8 +44,10 @@ TIME_STEP = 2e-6  # s, the paper's
 SAMPLE_EVERY = 10  # steps; a contact at 5 m/s lasts 60
 BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
 LOOK_EVERY = 50  # blocks between two looks at the error
-CLOSING_SPEED, REST_SPEED = 0.25, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
-PREPARATION_DAMPING = 10  # times gamma while a packing is made: grains without friction would take hours to come to rest
+CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
+PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
+FIELD_SAMPLES = 1000  # frames that the fields average
+FIELD_REACH = 10  # d around the body, half as much again behind it
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 
 
@@ -66,6 +68,8 @@ class MagnusParameters(StudyParameters):
     bead_diameter: float = quantity(0.5, "d", "diameter of the beads of a shape other than the disk", gt=0)
     polydispersity: float = quantity(0.1, "-", "grains' diameters are uniform within this of d", ge=0, lt=0.9)
     wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
+    fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing")
+    field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
     frames: int = quantity(1, "-", "pictures of the channel that are kept, the last at the end", ge=1, le=9999)
     largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
 
@@ -180,12 +184,29 @@ def build(p, grains, dt, body):
     drive = engines.SpinTranslateDrive(body=held, velocity=(p.v0, 0, 0), spin=(0, 0, p.spin), label="drive")
     binner = engines.ContactForceBinner(body=held, reference="motion", every=SAMPLE_EVERY, label="binner")
     O.dt = dt
+    measures = [binner, *field_averager(p, held)]
     scene.run_on(
-        p.loop, grains, gravity=0.0, between=[binner, drive], precision=p.precision, largest_overlap=p.largest_overlap
+        p.loop, grains, gravity=0.0, between=[*measures, drive], precision=p.precision, largest_overlap=p.largest_overlap
     )
     for wall, side in zip(clumps, (1, -1)):
         scene.load_on(wall, (0, side * p.wall_pressure * p.width * D, 0))
     return dict(walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held, phi=float(packed["phi"]))
+
+
+def field_averager(p, held):
+    """Return, in a list, the engine that averages the fields in the body's frame, or none; it sleeps until the steady state."""
+    from yade import O
+
+    if not p.fields:
+        return []
+    reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
+    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * O.dt) / FIELD_SAMPLES))
+    window = dict(low=(-1.5 * reach * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D)
+    return [
+        engines.FieldAverager(
+            body=held, kernel="diskBin", relative=True, stress=False, every=every, dead=True, label="around", **window
+        )
+    ]
 
 
 def record(p, folder, stage):
@@ -194,6 +215,7 @@ def record(p, folder, stage):
 
     folder.declare_series(**UNITS)
     state, binner = O.bodies[stage["body"]].state, O.labeledEngine("binner")
+    around = O.labeledEngine("around") if p.fields else None
     samples = max(1, round(BLOCK_TRAVEL * D / (p.v0 * O.dt) / SAMPLE_EVERY))
     block, track = samples * SAMPLE_EVERY, recording.Track(folder)
     steps = int(p.way * D / (p.v0 * O.dt) / block) * block
@@ -210,6 +232,8 @@ def record(p, folder, stage):
         row = dict(t=t, travel=p.v0 * t / D, x=state.pos[0], **recording.block_means(binner))
         folder.append(**{name: row[name] for name in UNITS})
         track.append(row)
+        if p.fields:
+            around.dead = row["travel"] < p.settle_travel
         if frames_due and done >= frames_due[0]:
             frames_due.pop(0)
             folder.frame(done * O.dt, *scene.picture(ids, stage["walls"], stage["body"]))
@@ -226,6 +250,8 @@ def record(p, folder, stage):
             " average over seeds, or take a longer channel",
             file=sys.stderr,
         )
+    if p.fields:
+        fields.write_fields(folder, "around", around)
     folder.write("angular", found.angular, first_travel=found.start)
     folder.summarize(phi=stage["phi"], v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, **found.summary)
 

@@ -20,6 +20,7 @@ INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 TOLERANCE = 1e-3  # of the area fraction
 DEEPEST_OVERLAP = 0.01  # [R] where closing walls count as jammed
 CLOSING_DEPTH = 0.03  # [R] of overlap for which the time step of the preparation is chosen
+MOST_STOPS = 50  # until grains that are stopped again and again count as pressed
 MOST_GRAINS = 10_000_000
 
 
@@ -145,7 +146,12 @@ def thinned(recipe, denser):
 
 
 def close(recipe):
-    """Let the walls of a wide channel close in until it has its height and its grains rest; return its arrays."""
+    """Let the walls of a wide channel close in until it has its height and its grains rest; return its arrays.
+
+    Grains start with the velocity of their share of the way, v_y = -v y/y_wall, so that the channel shrinks as a whole.
+    Walls that push grains at rest leave the density of jamming behind them and a dilute middle: 0.84 and 0.53 at an area
+    fraction of 0.78.
+    """
     area = np.sum(np.pi * radii_for(recipe) ** 2)
     start = recipe.height_for(area, INSERTION_FRACTION)
     x, y, r = insert(recipe, start)
@@ -154,7 +160,8 @@ def close(recipe):
     beads = np.array(recipe.beads)
     scene.add_disks(beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ")
     ids = scene.add_disks(x, y, r, recipe.material.density)
-    steps = bring_together(recipe, walls, start)
+    steps, speed = bring_together(recipe, walls, start)
+    scene.set_motion(ids, -speed * y / ((start - recipe.d) / 2))
     print(f"closing walls on {len(ids)} grains from {start:.3g} to {recipe.height:.3g}, {steps} steps", file=sys.stderr)
     progress.run_blocks(steps, 1000, lambda done: stop_if_jammed(recipe, area, walls), grains=len(ids), label="closing walls")
     halt(walls)
@@ -165,7 +172,7 @@ def close(recipe):
 
 
 def bring_together(recipe, walls, start):
-    """Put the loop and the drives of the walls into YADE; return the steps after which they are where they belong."""
+    """Put the loop and the drives of the walls into YADE; return the steps until they are where they belong, and their speed."""
     from yade import O
 
     way = (start - recipe.height) / 2
@@ -176,7 +183,7 @@ def bring_together(recipe, walls, start):
         engines.SpinTranslateDrive(body=wall, velocity=(0, -side * speed, 0)) for wall, side in zip(walls, (-1, 1))
     ]
     scene.run_on("grain", recipe.material, gravity=0.0, between=drives, largest_overlap=CLOSING_DEPTH, threads=free_cores())
-    return steps
+    return steps, speed
 
 
 def free_cores(most=2):
@@ -209,18 +216,20 @@ def stop_if_jammed(recipe, area, walls):
 
 
 def rest(recipe, ids):
-    """Run until the grains' mean kinetic energy is that of `rest_speed`; return it per grain over that."""
+    """Stop the grains until they do not set out again; return their mean kinetic energy over that of `rest_speed`.
+
+    Below jamming nothing but collisions stops them, and the slack between the walls sloshes for minutes at a few mm/s. So
+    velocities are set to zero, and the springs of what still overlaps push it apart, until that gives no more motion.
+    """
     from yade import O
 
-    limit = mean_area(recipe) * recipe.material.density * recipe.rest_speed**2 / 2
+    limit = len(ids) * mean_area(recipe) * recipe.material.density * recipe.rest_speed**2 / 2
+    block = int(np.ceil(recipe.d / recipe.rest_speed / O.dt / 100))
     loop = scene.fast_loop()
-
-    def at_rest(_done):
-        return loop.kineticEnergy / len(ids) < limit
-
-    most = int(200 * recipe.d / recipe.rest_speed / O.dt)
-    progress.run_blocks(most, 1000, at_rest, grains=len(ids), label="coming to rest (at most)")
-    energy = loop.kineticEnergy / len(ids)
-    if energy >= limit:
-        raise RuntimeError(f"grains keep a kinetic energy of {energy / limit:.3g} times that at {recipe.rest_speed:g}")
-    return energy / limit
+    for _ in range(MOST_STOPS):
+        scene.set_motion(ids, 0.0)
+        progress.run_blocks(block, block, grains=len(ids), label="coming to rest")
+        energy = loop.kineticEnergy / limit
+        if energy < 1:
+            return energy
+    raise RuntimeError(f"grains keep a kinetic energy of {energy:.3g} times that at {recipe.rest_speed:g}")

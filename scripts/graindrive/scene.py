@@ -81,6 +81,21 @@ def add_intruder(clump, x, y, blocked="xyzXYZ"):
     return id_
 
 
+def set_motion(ids, vy):
+    """Give free disks the velocities vy along y, one or (n,), and no other motion."""
+    from yade import O
+    from yade.minieigenHP import Vector3
+
+    loop = fast_loop()
+    if loop:
+        loop.sync()
+    for id_, speed in zip(ids, np.broadcast_to(vy, len(ids))):
+        state = O.bodies[id_].state
+        state.vel, state.angVel = Vector3(0, float(speed), 0), Vector3.Zero
+    if loop:
+        loop.read()
+
+
 def members(clump):
     """Return the ids of a clump's disks."""
     from yade import O
