@@ -111,6 +111,8 @@ def check_room(p):
         raise UsageError(
             f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d; raise travel and width"
         )
+    if abs(1 / p.field_spacing - round(1 / p.field_spacing)) > 1e-9:
+        raise UsageError(f"field_spacing={p.field_spacing:g} d must divide 1 d; take 1/{max(1, round(1 / p.field_spacing))}")
     if min(p.width, p.height) < 2 * p.intruder_diameter + 4:
         raise UsageError(
             f"a channel of {p.width:g} d x {p.height:g} d is too small for a body of {p.intruder_diameter:g} d;"
@@ -201,7 +203,7 @@ def field_averager(p, held):
         return []
     reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
     every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * O.dt) / FIELD_SAMPLES))
-    window = dict(low=(-1.5 * reach * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D)
+    window = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D)
     return [
         engines.FieldAverager(
             body=held, kernel="diskBin", relative=True, stress=False, every=every, dead=True, label="around", **window

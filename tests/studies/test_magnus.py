@@ -184,7 +184,7 @@ def test_another_shape_is_driven_as_beads(magnus, tmp_path):
         (dict(width=24.5), "whole number of wall disks"),
         (dict(dt_factor=100), "lower dt_factor"),
         (dict(shape="hexagram"), "shape must be one of"),
-        (dict(field_spacing=0.3, fields=True), "must divide 1 d"),
+        (dict(field_spacing=0.3), "must divide 1 d"),
     ],
 )
 def test_bad_input_is_a_usage_error_and_nothing_is_written(magnus, tmp_path, changes, said):
