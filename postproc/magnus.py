@@ -19,10 +19,10 @@ def draw(path, frame=-1):
     run = Run(path)
     around = fields_of(run)
     with plt.rc_context(STYLE):
-        width = COLUMN_WIDTH * (2.06 if around else 1)
-        figure = plt.figure(figsize=(width, 6.2), layout="constrained")
+        columns = [1.0, 0.85] if around else [1.0]
+        figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 6.4), layout="constrained")
         figure.suptitle(title(run), fontsize=8)
-        parts = np.atleast_1d(figure.subfigures(1, 2 if around else 1))
+        parts = np.atleast_1d(figure.subfigures(1, len(columns), width_ratios=columns))
         panels = list(parts[0].subplots(4, 1, height_ratios=[1.6, 1, 1, 1]))
         draw_forces(panels[0], run)
         draw_angles(panels[1:], run)
@@ -102,7 +102,7 @@ def draw_fields(figure, run, around):
     warm = np.nanquantile(around.map("temperature"), 0.99)
     fields.draw_map(panels[0], around, "speed", vmin=0, vmax=1.5)
     fields.draw_streamlines(panels[0], around)
-    fields.draw_map(panels[1], around, "area_fraction", vmin=0, vmax=max(0.5, 1.2 * run.summary["phi"]))
+    fields.draw_map(panels[1], around, "area_fraction", vmin=0, vmax=0.9)
     fields.draw_map(panels[2], around, "temperature", vmin=0, vmax=warm)
     for panel in panels:
         draw_body(panel, run)

@@ -69,7 +69,9 @@ def steady_state(series, settle, mu, spin_ratio):
     for name, mean in means.items():
         summary.update({name: mean.value, f"{name}_err": mean.error})
     summary.update(fluctuations(kept), **models(summary, mu))
-    summary.update(steady=int(steady), steady_from=float(kept["travel"][0]), steady_travel=float(np.ptp(kept["travel"])))
+    summary.update(
+        steady=int(steady), steady_from=float(kept["travel"][0]), steady_travel=float(np.ptp(kept["travel"]))
+    )
     angular = dict(theta=(angles_of(kept["normal"].shape[1]), "rad"), **by_angle(kept, mu))
     return SteadyState(summary["steady_from"], len(drag), steady and means["lift_to_drag"].resolved, summary, angular)
 
@@ -90,9 +92,7 @@ def shares(kept, drag):
 def fluctuations(kept):
     """Return standard deviations of the instantaneous force and contact number: within blocks and between them."""
     names = dict(drag_std="fx", lift_std="fy", contacts_std="contacts")
-    return {
-        key: float(np.sqrt(np.mean(kept[f"{name}_var"]) + np.var(kept[name]))) for key, name in names.items()
-    }
+    return {key: float(np.sqrt(np.mean(kept[f"{name}_var"]) + np.var(kept[name]))) for key, name in names.items()}
 
 
 def models(summary, mu):

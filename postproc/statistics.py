@@ -67,20 +67,20 @@ def steady_start(samples, *, parts=20, at_most=0.5, deviations=3.0):
     """Return (samples to leave out at the start of a series (n,) as its transient, whether what is left is steady).
 
     Geweke's test (1992): the means of the first fifth and of the last half of what is left must agree within so many
-    standard errors, by blocking; the first multiple of n/`parts` that passes is taken, up to `at_most` of the series. It
-    cuts nothing that noise explains, and takes a drift below that noise for the steady state.
+    standard errors; the first multiple of n/`parts` that passes is taken, up to `at_most` of the series. The errors are
+    those of a steady process: the last half's by blocking, the first fifth's in proportion, since its own would hold the
+    transient. It cuts nothing that noise explains. A last half whose error blocking cannot resolve is not called steady.
     """
     x = np.asarray(samples, dtype=float)
-    cuts = [k * len(x) // parts for k in range(int(at_most * parts) + 1)]
-    return next(((cut, True) for cut in cuts if halves_agree(x[cut:], deviations)), (cuts[-1], False))
-
-
-def halves_agree(x, deviations):
-    """True if the means of the first fifth and of the last half of (n,) samples agree; too few samples agree."""
-    if len(x) < 5 * FEWEST_BLOCKS:
-        return True
-    early, late = block_mean(x[: len(x) // 5]), block_mean(x[len(x) // 2 :])
-    return abs(early.value - late.value) <= deviations * np.hypot(early.error, late.error)
+    for cut in (k * len(x) // parts for k in range(int(at_most * parts) + 1)):
+        early, late = x[cut : cut + (len(x) - cut) // 5], x[(cut + len(x)) // 2 :]
+        if len(early) < FEWEST_BLOCKS:
+            return cut, False
+        mean = block_mean(late)
+        error = mean.error * np.sqrt(1 + len(late) / len(early))
+        if abs(early.mean() - mean.value) <= deviations * error:
+            return cut, mean.resolved
+    return cut, False
 
 
 def blocking_levels(x):

@@ -90,7 +90,7 @@ class MagnusParameters(StudyParameters):
 
 
 PRESETS = {
-    "smoke": dict(width=60, height=40, v0=2.5, dt_factor=2),
+    "smoke": dict(width=60, height=40, v0=2.5, dt_factor=2, field_spacing=0.25),
     "demo": dict(width=150, height=100, dt_factor=2.5),
     "paper": {},
 }
@@ -106,13 +106,17 @@ def material(mu, damping=1):
 def check_room(p):
     """The body must fit between the walls, and must not meet its own wake."""
     if p.way > p.width:
-        raise UsageError(f"travel={p.way:g} d is longer than the channel: the body would meet its wake; raise width={p.width:g}")
+        raise UsageError(
+            f"travel={p.way:g} d is longer than the channel: the body would meet its wake; raise width={p.width:g}"
+        )
     if p.way <= p.settle_travel:
         raise UsageError(
             f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d; raise travel and width"
         )
     if abs(1 / p.field_spacing - round(1 / p.field_spacing)) > 1e-9:
-        raise UsageError(f"field_spacing={p.field_spacing:g} d must divide 1 d; take 1/{max(1, round(1 / p.field_spacing))}")
+        raise UsageError(
+            f"field_spacing={p.field_spacing:g} d must divide 1 d; take 1/{max(1, round(1 / p.field_spacing))}"
+        )
     if min(p.width, p.height) < 2 * p.intruder_diameter + 4:
         raise UsageError(
             f"a channel of {p.width:g} d x {p.height:g} d is too small for a body of {p.intruder_diameter:g} d;"
@@ -188,11 +192,18 @@ def build(p, grains, dt, body):
     O.dt = dt
     measures = [binner, *field_averager(p, held)]
     scene.run_on(
-        p.loop, grains, gravity=0.0, between=[*measures, drive], precision=p.precision, largest_overlap=p.largest_overlap
+        p.loop,
+        grains,
+        gravity=0.0,
+        between=[*measures, drive],
+        precision=p.precision,
+        largest_overlap=p.largest_overlap,
     )
     for wall, side in zip(clumps, (1, -1)):
         scene.load_on(wall, (0, side * p.wall_pressure * p.width * D, 0))
-    return dict(walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held, phi=float(packed["phi"]))
+    return dict(
+        walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held, phi=float(packed["phi"])
+    )
 
 
 def field_averager(p, held):
@@ -203,7 +214,9 @@ def field_averager(p, held):
         return []
     reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
     every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * O.dt) / FIELD_SAMPLES))
-    window = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D)
+    window = dict(
+        low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D
+    )
     return [
         engines.FieldAverager(
             body=held, kernel="diskBin", relative=True, stress=False, every=every, dead=True, label="around", **window

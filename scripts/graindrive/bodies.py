@@ -4,19 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import engines, intruder, scene
+from . import intruder, scene
+
+COARSE = 0.01  # bead diameter for a first look at a shape's size, in its own units
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body about its centroid: bead centres (n, 2) and their radius, corners (m, 2) ((0, 2) for a single disk), area, mass."""
+    """A body about its centroid: bead centres (n, 2) and their radius, corners (m, 2), (0, 2) for a single disk; area, mass."""
 
     beads: np.ndarray
     bead_radius: float
     outline: np.ndarray
     area: float
     mass: float
-    clump: object = None
+    inertia: float
 
     def as_arrays(self, unit):
         """Return what a run folder keeps of it, for the group `intruder`."""
@@ -31,16 +33,22 @@ def body_of(shape, size, bead_diameter, density):
     """
     if shape == "disk":
         area = np.pi * size**2 / 4
-        return Body(np.zeros((1, 2)), size / 2, np.zeros((0, 2)), area, density * area)
-    drawn = intruder.make(shape, orientation_deg=0, bead_diameter=1e-3, bead_spacing=1, mass=1)
-    outline = engines.Outline(drawn.vertices * size / np.ptp(drawn.vertices, axis=0).max())
-    mass = density * outline.area
-    clump = intruder.beads_along(outline, shape, bead_diameter, 1, mass)
-    return Body(clump.beads, clump.bead_radius, outline.vertices - outline.centroid, outline.area, mass, clump)
+        return Body(np.zeros((1, 2)), size / 2, np.zeros((0, 2)), area, density * area, density * area * size**2 / 8)
+    drawn = made(shape, COARSE, 1.0)
+    scale = size / np.ptp(drawn.vertices, axis=0).max()
+    area = drawn.area * scale**2
+    clump = made(shape, bead_diameter / scale, density * area).clump
+    radius, inertia = clump.bead_radius * scale, clump.inertia * scale**2
+    return Body(clump.beads * scale, radius, drawn.vertices * scale, area, density * area, inertia)
+
+
+def made(shape, bead_diameter, mass):
+    """Return the `Intruder` of that shape in its own units, upright, with touching beads."""
+    return intruder.make(shape, orientation_deg=0, bead_diameter=bead_diameter, bead_spacing=1, mass=mass)
 
 
 def add(body, x, y, density):
     """Put the body into YADE at (x, y), held; return its id."""
-    if body.clump is None:
+    if len(body.outline) == 0:
         return scene.add_disks([x], [y], [body.bead_radius], density, "xyzXYZ")[0]
-    return scene.add_intruder(body.clump, x, y)
+    return scene.add_intruder(body, x, y)

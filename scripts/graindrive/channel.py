@@ -104,7 +104,9 @@ def build(recipe):
 def radii_for(recipe):
     """Return the radii whose areas sum to `phi` of the free area, to within half a grain."""
     wanted = recipe.phi * recipe.free_area()
-    radii = engines.uniform_radii(int(wanted / (np.pi / 4 * recipe.d_min**2)) + 1, recipe.d_min, recipe.d_max, recipe.seed)
+    radii = engines.uniform_radii(
+        int(wanted / (np.pi / 4 * recipe.d_min**2)) + 1, recipe.d_min, recipe.d_max, recipe.seed
+    )
     return radii[: 1 + np.argmin(np.abs(np.cumsum(np.pi * radii**2) - wanted))]
 
 
@@ -116,7 +118,9 @@ def insert(recipe, height):
     try:
         centres = engines.random_insertion((0, recipe.width, -inner, inner), True, radii, obstacles, recipe.seed)
     except ValueError as error:
-        raise UsageError(f"phi={recipe.phi:g} is too dense for this box: {error}; lower phi or enlarge the box") from None
+        raise UsageError(
+            f"phi={recipe.phi:g} is too dense for this box: {error}; lower phi or enlarge the box"
+        ) from None
     return centres[:, 0], centres[:, 1], radii
 
 
@@ -156,14 +160,21 @@ def close(recipe):
     start = recipe.height_for(area, INSERTION_FRACTION)
     x, y, r = insert(recipe, start)
     scene.start(recipe.width, start)
-    walls = [scene.add_wall_clump(recipe.width, recipe.d, recipe.material.density, side * (start - recipe.d) / 2) for side in (-1, 1)]
+    walls = [
+        scene.add_wall_clump(recipe.width, recipe.d, recipe.material.density, side * (start - recipe.d) / 2)
+        for side in (-1, 1)
+    ]
     beads = np.array(recipe.beads)
-    scene.add_disks(beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ")
+    scene.add_disks(
+        beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ"
+    )
     ids = scene.add_disks(x, y, r, recipe.material.density)
     steps, speed = bring_together(recipe, walls, start)
     scene.set_motion(ids, -speed * y / ((start - recipe.d) / 2))
     print(f"closing walls on {len(ids)} grains from {start:.3g} to {recipe.height:.3g}, {steps} steps", file=sys.stderr)
-    progress.run_blocks(steps, 1000, lambda done: stop_if_jammed(recipe, area, walls), grains=len(ids), label="closing walls")
+    progress.run_blocks(
+        steps, 1000, lambda done: stop_if_jammed(recipe, area, walls), grains=len(ids), label="closing walls"
+    )
     halt(walls)
     energy = rest(recipe, ids)
     stop_if_jammed(recipe, area, walls)
@@ -182,7 +193,9 @@ def bring_together(recipe, walls, start):
     drives = [
         engines.SpinTranslateDrive(body=wall, velocity=(0, -side * speed, 0)) for wall, side in zip(walls, (-1, 1))
     ]
-    scene.run_on("grain", recipe.material, gravity=0.0, between=drives, largest_overlap=CLOSING_DEPTH, threads=free_cores())
+    scene.run_on(
+        "grain", recipe.material, gravity=0.0, between=drives, largest_overlap=CLOSING_DEPTH, threads=free_cores()
+    )
     return steps, speed
 
 

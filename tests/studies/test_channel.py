@@ -44,7 +44,9 @@ def test_area_fraction_is_reached_and_nothing_overlaps(phi):
     free = 30 * 23 - 30 * np.pi / 4 - np.pi * 4
     assert np.sum(np.pi * made["r"] ** 2) / free == pytest.approx(phi, abs=1e-3)
     assert made["phi"] == pytest.approx(np.sum(np.pi * made["r"] ** 2) / free, rel=1e-12)
-    assert made["deepest_overlap"] < (1e-3 if phi > 0.5 else 1e-12)  # touching grains of a compressed one rest at a few 1e-4 R
+    assert made["deepest_overlap"] < (
+        1e-3 if phi > 0.5 else 1e-12
+    )  # touching grains of a compressed one rest at a few 1e-4 R
     body = np.hypot(made["x"] - 15, made["y"]) - made["r"] - 2
     assert body.min() > -1e-3
     wall = (np.arange(30) + 0.5, 11.5)
@@ -85,11 +87,14 @@ def test_too_high_an_area_fraction_says_what_was_reached():
 
 def test_an_area_fraction_that_whole_grains_cannot_reach_is_refused():
     with pytest.raises(UsageError, match="whole grains"):
-        channel.channel(recipe(width=6.0, height=6.0, beads=((3.0, 0.0),), bead_radius=0.5, body_area=np.pi / 4, phi=0.05))
+        channel.channel(
+            recipe(width=6.0, height=6.0, beads=((3.0, 0.0),), bead_radius=0.5, body_area=np.pi / 4, phi=0.05)
+        )
 
 
 @pytest.mark.parametrize(
-    "changes, said", [(dict(width=30.5), "whole number of wall disks"), (dict(width=3e5), "1 and 10000000 are possible")]
+    "changes, said",
+    [(dict(width=30.5), "whole number of wall disks"), (dict(width=3e6), "1 and 10000000 are possible")],
 )
 def test_channels_that_cannot_be_are_refused(changes, said):
     with pytest.raises(UsageError, match=said):

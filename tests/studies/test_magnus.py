@@ -195,7 +195,7 @@ def test_bad_input_is_a_usage_error_and_nothing_is_written(magnus, tmp_path, cha
 
 def test_the_smoke_run_as_a_command_leaves_one_complete_folder(cache, tmp_path):
     environment = {**os.environ, "HOME": str(tmp_path / "home"), "GRAINDRIVE_CACHE": str(cache)}
-    keys = ["scale=smoke", "width=40", "settle_travel=20", "field_spacing=0.25", "out=result"]
+    keys = ["scale=smoke", "width=40", "settle_travel=20", "field_spacing=1", "out=result"]
     command = ["yade", "-n", "-x", str(STUDIES / "magnus.py"), *keys]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
