@@ -258,6 +258,8 @@ def record(p, folder, stage):
     recording.run_sampled(
         folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=f"driving {p.way:g} d"
     )
+    if frames_due:  # the run ended early
+        folder.frame(O.time, *scene.picture(ids, stage["walls"], stage["body"]))
     found = steady()
     if p.until_error and not found.is_good_to(p.until_error, FEWEST_BLOCKS):
         print(
