@@ -5,14 +5,17 @@ gravity, a channel of disks periodic in x between two rough walls. The body move
 omega_0 = Omega V0/R for all time. SI units: d = 0.02 m, 20 kg/m^2; lengths on the command line in d.
 
 Readings, each a parameter or named here: diameters are uniform within 10 %; the area fraction is that of the area free to
-grains (between the walls' centre lines, without wall disks and body); walls close in on grains without friction, since
-grains of mu = 0.5 jam before 0.818. Lift is positive along -omega x V, drag along -V.
+grains (between the walls' centre lines, without wall disks and body), which gives the paper's 26,000 to 62,000 grains; a
+packing is compressed without friction, since grains of mu = 0.5 jam at 0.81, and with five times the damping, so that it
+comes to rest. Lift is positive along -omega x V, drag along -V. Theta is counter-clockwise from V.
 
-Drag grows as V0^2 and L/D hardly depends on V0, while the steps needed go as 1/V0: v0=2.5 costs a tenth of the paper's 0.25 m/s.
+Drag grows as V0^2 and L/D does not depend on V0 (phi = 0.352, Omega = 5, box 150 d x 100 d: D = 0.040 and 4.28 N, L/D = 0.33
+and 0.34, both +- 0.04, at 0.25 and 2.5 m/s), while the steps needed go as 1/V0. At 2.5 m/s a grain that the body hits
+overlaps it by 1.5 % of a radius. dt_factor=2.5 is still a quarter of the critical step at the largest overlap allowed.
 
-Cost: the paper's size is 26,000 to 62,000 disks and 1.2e7 steps at 0.25 m/s, a quarter of an hour (phi = 0.352) to two hours
-(0.818) on one core; the demo is 6,700 disks and 2.4e6 steps, a minute or two. A shorter channel means a shorter travel:
-after one length the body meets its own wake, which never refills.
+Cost on one core: the paper's size is 26,500 to 61,700 disks and 1.2e7 steps at 0.25 m/s, a quarter of an hour (phi = 0.352)
+to an hour and a half (0.818); the demo is 6,600 disks and 2.4e6 steps, a minute or two. A shorter channel means a shorter
+travel: after one length the body meets its own wake, which never refills.
 
     scripts/run magnus                                  the demo
     yade -n -x studies/magnus.py phi=0.818 spin_ratio=10 scale=paper out=dense
