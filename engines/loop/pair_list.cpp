@@ -15,8 +15,9 @@ std::uint32_t padded(std::uint32_t places) { return (places + pack_alignment - 1
 
 }  // namespace
 
-void PairList::select(const GrainRow* rows, const Box& box, const std::vector<double>& reach)
+PairCounts PairList::select(const GrainRow* rows, const Box& box, const std::vector<Reach>& reach)
 {
+	PairCounts counts;
 	for (Candidate& pair : candidates) {
 		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
 		double dx = b.x - a.x, dy = b.y - a.y;
@@ -25,9 +26,13 @@ void PairList::select(const GrainRow* rows, const Box& box, const std::vector<do
 			dx = d.x;
 			dy = d.y;
 		}
-		const double near = reach[pair.first] + reach[pair.second];
-		pair.near = dx * dx + dy * dy < near * near;
+		const Reach &one = reach[pair.first], &other = reach[pair.second];
+		const double square = dx * dx + dy * dy, whole = one.whole + other.whole, half = one.half + other.half;
+		pair.near = square < whole * whole;
+		counts.selected += pair.near;
+		counts.by_half_budgets += square < half * half;
 	}
+	return counts;
 }
 
 void PairList::lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads,

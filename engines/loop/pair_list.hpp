@@ -15,12 +15,21 @@ struct SweepRange {
 	std::uint32_t block_begin, block_end, pair_begin, pair_end;
 };
 
+struct PairCounts {
+	std::size_t selected = 0, by_half_budgets = 0;  ///< by_half_budgets: if grains had half the way to go
+};
+
+/// Radius and the way a grain may go until the next selection, or half of that way [m].
+struct Reach {
+	double whole, half;
+};
+
 class PairList {
 public:
 	std::vector<Candidate> candidates;
 
-	/// Selects the candidates nearer than the sum of their reaches (radius and the way a grain may go until the next selection [m]).
-	void select(const GrainRow* rows, const Box& box, const std::vector<double>& reach);
+	/// Selects the candidates nearer than the sum of their reaches.
+	PairCounts select(const GrainRow* rows, const Box& box, const std::vector<Reach>& reach);
 	/// Lays the selected ones out for `threads` and points the grains' slots at them.
 	void lay_out(const GrainRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision,
 		std::uint32_t dummy_row);

@@ -97,8 +97,9 @@ void Stepper::compute_body_forces()
 	failure = nullptr;
 	prepare();
 	if (failure) std::rethrow_exception(failure);
-	kernel.pairs(data, pairs.early_begin, pairs.early_end, true);
-	for (std::size_t b = 0; b < scene.bodies.size(); ++b) collect_forces(b);
+	team.run([&](int rank) { compute_early_pairs(rank); });
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+		if (!body_fixed[b]) collect_forces(b);
 	body_forces_known = true;
 }
 
@@ -157,7 +158,7 @@ void Stepper::finish()
 {
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
 		if (body_fixed[b]) continue;
-		collect_forces(b);
+		if (!body_forces_known) collect_forces(b);
 		move_body(b);
 	}
 	if (!scene.walls.empty()) move_walls();
@@ -178,9 +179,12 @@ void Stepper::select()
 		find_neighbours();
 		allow_travel();
 	}
-	std::vector<double> reach(n_grains);
-	for (std::uint32_t i = 0; i < n_grains; ++i) reach[i] = rows[i].radius + allowed[party_of(i)];
-	pairs.select(rows.data(), scene.box, reach);
+	std::vector<Reach> reach(n_grains);
+	for (std::uint32_t i = 0; i < n_grains; ++i) {
+		const double budget = allowed[party_of(i)];
+		reach[i] = { rows[i].radius + budget, rows[i].radius + std::max(budget / 2, std::min(budget, smallest_budget())) };
+	}
+	choose_pace(pairs.select(rows.data(), scene.box, reach));
 	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
 	point_at_lists();
 	std::fill(travelled.begin(), travelled.end(), 0);

@@ -140,6 +140,7 @@ private:
 	std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;  // those with candidates in common
 	std::vector<char> thread_beyond;                                  // by thread: a block went beyond its limit in the last step
 	bool selection_due = true;
+	double pace = 40;  // steps between selections that budgets are made for
 	std::exception_ptr failure;
 
 	void arrange_rows();
@@ -170,6 +171,8 @@ private:
 	void measure_speeds();
 	void find_neighbours();
 	void allow_travel();
+	double smallest_budget() const;
+	void choose_pace(const PairCounts& counts);
 	double farthest_before_selection() const;
 	void spend_budgets();
 	double slipping_bound() const;

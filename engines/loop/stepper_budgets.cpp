@@ -11,9 +11,10 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_selections = 40;  // aimed at, where grains are fast
-constexpr double smallest_budget = 0.001;        // [d]
-constexpr double largest_budget = 0.25;          // of the skin
+constexpr double fewest_steps = 20, most_steps = 200;  // between two selections, aimed at where grains are fast
+constexpr double selecting_cost = 6;                   // s, of looking at a candidate, over p, of computing a pair (measured)
+constexpr double smallest = 0.001;                     // budget [d]
+constexpr double largest_budget = 0.25;                // of the skin
 
 }  // namespace
 
@@ -22,6 +23,8 @@ std::uint32_t Stepper::party_of(std::uint32_t row) const
 {
 	return row < n_free ? row / grains_per_block : n_blocks() + members[row - n_free].body;
 }
+
+double Stepper::smallest_budget() const { return smallest * typical_diameter; }
 
 void Stepper::measure_speeds()
 {
@@ -57,13 +60,24 @@ void Stepper::allow_travel()
 		expected[pair.first] = std::max(expected[pair.first], speed[pair.second]);
 		expected[pair.second] = std::max(expected[pair.second], speed[pair.first]);
 	}
-	const double least = smallest_budget * typical_diameter, most = largest_budget * skin;
+	const double least = smallest_budget(), most = largest_budget * skin;
 	travelled.resize(speed.size());
 	allowed.resize(speed.size());
-	for (std::size_t p = 0; p < allowed.size(); ++p)
-		allowed[p] = std::min(std::max(expected[p] * scene.dt * steps_between_selections, least), most);
+	for (std::size_t p = 0; p < allowed.size(); ++p) allowed[p] = std::min(std::max(expected[p] * scene.dt * pace, least), most);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
 		if (body_fixed[b]) allowed[n_blocks() + b] = 0;
+}
+
+/// Sets how many steps to aim at between selections. A pair that is selected and does not touch costs at every step, a selection once:
+///
+///   cost per step = p (N_0 + e n) + s N_candidates / n,  least for n = sqrt(s N_candidates / (p e)),
+///
+/// where e is how many more are selected for each step that budgets are made for: known from those that half the budgets would
+/// select. Only the speed depends on it, no bit of a result.
+void Stepper::choose_pace(const PairCounts& counts)
+{
+	const double more_per_step = 2 * std::max<double>(counts.selected - counts.by_half_budgets, 1) / pace;
+	pace = std::clamp(std::sqrt(selecting_cost * pairs.candidates.size() / more_per_step), fewest_steps, most_steps);
 }
 
 /// How far from its place at the last search any grain can be before the next selection.

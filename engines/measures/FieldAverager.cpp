@@ -7,27 +7,20 @@ namespace graindrive {
 
 const char* const FieldAverager::documentation =
 	"Area fraction, velocity, granular temperature, density and stress on a grid, averaged while the scene runs.\n\n"
-	"kernel='diskBin': exact area of grain and bin in common, velocities with rotation, one velocity for each grain in each bin: "
-	"the\n"
-	"mean over the common area (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian': exp(-r^2/w^2) cut at `cutoff` w and\n"
-	"normalised there (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001). kernel='sphere': averages in spheres, here disks, "
-	"of\n"
-	"radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the exact integral of the kernel along "
-	"the\n"
-	"branch vector, kinetic stress by the fluctuations about the mean over all samples; both positive in compression, pressure = "
-	"tr/2.\n\n"
-	"Grains are disks that are free in x, y and rotation, belong to no clump and are not `body`. All others (walls, driven "
-	"disks, beads\n"
-	"of an intruder) bound the grains: they have no part in area fraction, velocity and kinetic stress, and their contacts "
-	"count\n"
-	"from the grain's centre to the contact point (Weinhart, Thornton, Luding, Bokhove 2012, after Goldhirsch 2010).\n\n"
-	"Arrays have the shape (phases, ny, nx), (…, 2) for vectors, (…, 2, 2) for stress[a, b]: force along a, branch along b. A "
-	"sample\n"
-	"at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the contacts and before drives and "
-	"the\n"
-	"integrator. Misleads where the window passes few grains: velocity is a mean over grains, not over samples. Changing what "
-	"decides\n"
-	"the grid begins anew. Raises ValueError for a window, spacing, kernel or number out of range.";
+	"kernel='diskBin': exact area of grain and bin in common, velocities with rotation, one velocity for each grain in each\n"
+	"bin: the mean over the common area (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian': exp(-r^2/w^2), cut at\n"
+	"`cutoff` w and normalised there (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001). kernel='sphere': averages in\n"
+	"spheres, here disks, of radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the exact\n"
+	"integral of the kernel along the branch vector, kinetic stress by the fluctuations about the mean over all samples; both\n"
+	"positive in compression, pressure = tr/2.\n\n"
+	"Grains are disks that are free in x, y and rotation, belong to no clump and are not `body`. All others (walls, driven\n"
+	"disks, beads of an intruder) bound the grains: they have no part in area fraction, velocity and kinetic stress, and their\n"
+	"contacts count from the grain's centre to the contact point (Weinhart, Thornton, Luding, Bokhove 2012, after Goldhirsch\n"
+	"2010).\n\n"
+	"Arrays have the shape (phases, ny, nx), (..., 2) for vectors, (..., 2, 2) for stress[a, b]: force along a, branch along b.\n"
+	"A sample at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the contacts and before\n"
+	"drives and the integrator. Changing what decides the fields begins anew. Misleads where few grains pass: velocity is a\n"
+	"mean over grains, not over samples. Raises ValueError for a window, spacing, kernel or number out of range.";
 
 namespace {
 
@@ -70,6 +63,23 @@ void FieldAverager::clear()
 {
 	samplesData.assign(phases, 0);
 	sumsData.assign(phases * sums_in_a_phase(), 0);
+	averagedAs = description();
+}
+
+/// All that decides what a sum means; a fixed origin may be moved while it averages, as a body moves.
+std::string FieldAverager::description() const
+{
+	std::ostringstream words;
+	words.precision(17);
+	words << kernel << ' ' << width << ' ' << cutoff << ' ' << body << ' ' << relative << ' ' << stress << ' ' << phases << ' '
+		  << period << ' ' << phaseStart << ' ' << spacing << ' ' << low.transpose() << ' ' << high.transpose();
+	return words.str();
+}
+
+bool FieldAverager::sums_fit() const
+{
+	return averagedAs == description() && samplesData.size() == std::size_t(phases) &&
+	       sumsData.size() == phases * sums_in_a_phase();
 }
 
 FieldPlan FieldAverager::plan() const
@@ -152,7 +162,7 @@ std::vector<int> FieldAverager::samples() const { return sums_fit() ? samplesDat
 FieldMeans FieldAverager::means(int phase, int point) const
 {
 	const std::size_t at = phase * sums_in_a_phase() + std::size_t(point) * sums_at_a_point(stress);
-	return sums_fit() ? means_at(sumsData.data() + at, samplesData[phase], stress) : means_at(nullptr, 0, stress);
+	return means_at(sumsData.data() + at, samplesData[phase], stress);
 }
 
 }  // namespace graindrive

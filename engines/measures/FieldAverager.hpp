@@ -16,7 +16,7 @@ public:
 	{
 		using Self = FieldAverager;
 		visit("body", &Self::body, "id of the body or clump whose centre is the window's origin; -1: the fixed point `origin`");
-		visit("origin", &Self::origin, "origin of the window where there is no body [m]");
+		visit("origin", &Self::origin, "origin of the window where there is no body [m]; may be moved while it averages");
 		visit("low", &Self::low, "lower left corner of the window from its origin [m]");
 		visit("high", &Self::high, "upper right corner of the window from its origin [m]");
 		visit("spacing", &Self::spacing, "edge of the square bins, distance of the points in their middles [m]");
@@ -31,6 +31,7 @@ public:
 		visit("stress", &Self::stress, "average stress and pressure too");
 		visit("samplesData", &Self::samplesData, "samples by phase, for save and load");
 		visit("sumsData", &Self::sumsData, "running sums, for save and load");
+		visit("averagedAs", &Self::averagedAs, "the settings that the sums were made with, for save and load");
 	}
 	void check() const;
 	void action() override;
@@ -43,7 +44,9 @@ public:
 	int phase_at(Real time) const;
 	/// Samples by phase; zeros where settings have changed since.
 	std::vector<int> samples() const;
-	/// Fields at a point of the grid, place j nx + i.
+	/// False before the first sample and after a change of what decides the fields, until the next one.
+	bool sums_fit() const;
+	/// Fields at a point of the grid, place j nx + i; only while `sums_fit`.
 	FieldMeans means(int phase, int point) const;
 
 	int body = -1, every = 1, phases = 1;
@@ -53,6 +56,7 @@ public:
 	bool relative = false, stress = true;
 	std::vector<int> samplesData;
 	std::vector<Real> sumsData;
+	std::string averagedAs;
 
 private:
 	/// Where the window is now and how fast it moves.
@@ -63,7 +67,7 @@ private:
 	SceneView view_;
 
 	std::size_t sums_in_a_phase() const { return std::size_t(points(0)) * points(1) * sums_at_a_point(stress); }
-	bool sums_fit() const { return samplesData.size() == std::size_t(phases) && sumsData.size() == phases * sums_in_a_phase(); }
+	std::string description() const;
 	Frame frame();
 	void leave_out_the_body();
 	void add_grains(const FieldPlan& plan, const Frame& frame, Real* sums) const;

@@ -18,8 +18,10 @@ np::ndarray array_of(const Averager& averager, const py::tuple& shape, int numbe
 	const int nx = averager.points(0), ny = averager.points(1);
 	std::vector<Real> values(std::size_t(averager.phases) * ny * nx * numbers);
 	Real* out = values.data();
+	const bool known = averager.sums_fit();
 	for (int phase = 0; phase < averager.phases; ++phase)
-		for (int point = 0; point < nx * ny; ++point, out += numbers) write(averager.means(phase, point), out);
+		for (int point = 0; point < nx * ny; ++point, out += numbers)
+			write(known ? averager.means(phase, point) : means_at(nullptr, 0, averager.stress), out);
 	return seam::array_of(values).reshape(py::tuple(py::make_tuple(averager.phases, ny, nx) + shape));
 }
 

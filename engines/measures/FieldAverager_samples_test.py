@@ -124,16 +124,35 @@ def test_save_and_load_go_on_averaging(loops, tmp_path):
     assert fields.samples.tolist() == [5, 5]
 
 
-def test_changing_the_grid_begins_anew():
+@pytest.mark.parametrize(
+    "change, shape",
+    [({"spacing": 0.5}, (1, 12, 12)), ({"kernel": "sphere"}, (1, 24, 24)), ({"high": (3.5, 3, 0)}, (1, 24, 26))]
+    + [({key: value}, (1, 24, 24)) for key, value in dict(width=0.7, cutoff=2, stress=False).items()],
+)
+def test_changing_what_decides_the_fields_begins_anew(change, shape):
     disk(0, 0)
     fields = averager()
     loop(before_newton=[fields])
     run(3)
-    fields.spacing = 0.5
-    assert fields.areaFraction.shape == (1, 12, 12) and np.isnan(fields.areaFraction).all()
+    for name, value in change.items():
+        setattr(fields, name, value)
+    assert fields.areaFraction.shape == shape and np.isnan(fields.areaFraction).all()
     assert fields.samples.tolist() == [0]
     run(2)
-    assert fields.samples.tolist() == [2]
+    assert fields.samples.tolist() == [2] and not np.isnan(fields.areaFraction).any()
+
+
+def test_a_fixed_origin_may_be_moved_while_it_averages():
+    disk(1, 0, velocity=(1000, 0))  # 0.1 a step
+    fields = averager(kernel="diskBin")
+    loop(before_newton=[fields])
+    for step in range(10):
+        fields.origin = (0.1 * step, 0, 0)
+        run(1)
+    assert fields.samples.tolist() == [10]
+    # The grain stands still in this window: as many bins as one frame has, each as full.
+    assert (fields.areaFraction * fields.x).sum() / fields.areaFraction.sum() == pytest.approx(1, abs=1e-12)
+    assert fields.areaFraction.max() == pytest.approx(1, abs=1e-12)
 
 
 @pytest.mark.parametrize(

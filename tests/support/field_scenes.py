@@ -1,4 +1,4 @@
-"""Scenes and helpers that the tests of FieldAverager share."""
+"""Scenes that the tests of FieldAverager share, and how they read its fields."""
 
 import numpy as np
 from disks import clump, disk, engines, hertz, loop, new_scene
