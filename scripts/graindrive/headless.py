@@ -3,12 +3,14 @@
 import atexit
 import gc
 import os
+import runpy
 import shutil
 import signal
 import socketserver
 import sys
 import threading
 import traceback
+from dataclasses import dataclass
 from pathlib import Path
 
 from . import signals
@@ -21,6 +23,33 @@ from .run_remains import AlreadyComplete
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 
+@dataclass(frozen=True)
+class Declaration:
+    """What a study hands to `main`: its name, its class of parameters, its presets by scale, a preset study's values."""
+
+    name: str
+    parameters: type
+    presets: dict
+    defaults: dict
+
+
+_declared = None  # where `declaration_of` waits for a declaration; None: `main` runs the study
+
+
+def declaration_of(path):
+    """Return the `Declaration` of the study in file `path`, without running it; RuntimeError if it makes none."""
+    global _declared
+    arguments, search_path, _declared = sys.argv, list(sys.path), []
+    try:
+        sys.argv = [str(path)]
+        runpy.run_path(str(path), run_name="__main__")
+        if not _declared:
+            raise RuntimeError(f"{path} does not call headless.main, so it is not a study")
+        return _declared[0]
+    finally:
+        sys.argv, sys.path[:], _declared = arguments, search_path, None
+
+
 def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
     """Run a study as a command and end the program as a command should.
 
@@ -30,6 +59,9 @@ def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
     128 + n after signal n, 1 after any other failure. In a terminal a good run returns to YADE's console.
     """
     name = name or Path(sys.argv[0]).stem
+    if _declared is not None:
+        _declared.append(Declaration(name, parameters, presets, dict(defaults or {})))
+        return
     leave_nothing_behind()
     p = parameters.from_command_line(sys.argv[1:], presets, study=name, defaults=defaults)
     batch = is_batch()
