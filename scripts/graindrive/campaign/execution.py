@@ -76,13 +76,20 @@ def carry_out(folder, plan, cores, options):
     """
     set_marks(folder, plan)
     command = [sys.executable, "-m", "snakemake", "--snakefile", SNAKEFILE, "--directory", folder, *ours(cores, options)]
-    child = subprocess.Popen(command, stdin=subprocess.DEVNULL, process_group=0, env=environment())
+    child = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, process_group=0, preexec_fn=hear_interrupts, env=environment()
+    )
     try:
         return child.wait()
     except (Interrupted, KeyboardInterrupt):
         print("graindrive: stopping; what the runs have so far is kept for the next call", file=sys.stderr)
         end_group(child)
         raise
+
+
+def hear_interrupts():
+    """Let SIGINT through to Snakemake and the runs: a shell has it ignored in what it starts in the background."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def ours(cores, options):
