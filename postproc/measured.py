@@ -15,7 +15,7 @@ class Measured:
     error: float
 
     def __str__(self):
-        if not np.isfinite(self.error) or self.error == 0:
+        if not self.error > 1e-9 * abs(self.value) or np.isinf(self.error):
             return f"{self.value:.4g}" + (" (error unknown)" if np.isnan(self.error) else "")
         digits = max(0, 1 - int(np.floor(np.log10(self.error))))
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
@@ -57,30 +57,46 @@ def mean_of(repeats):
     return Measured(float(values.mean()), own if np.isnan(scatter) else float(np.fmax(own, scatter)))
 
 
-def line_through(x, points):
-    """Return (slope, intercept) of the straight line through points (n `Measured`) at exact x (n,), as `Measured`.
+def polynomial_through(x, points, degree):
+    """Return the coefficients, highest power first, of the polynomial through points (n `Measured`) at exact x (n,).
 
-    Least squares weighted by the errors. Errors of the result grow by sqrt(chi²/(n − 2)) where that is above 1 (Birge):
-    points that no line fits do not make a precise slope. Fewer than two points, or a point without a known error, give
-    unknown results.
+    Least squares weighted by the errors. Errors of the result grow by sqrt(chi²/(n − degree − 1)) where that is above 1
+    (Birge): points that no such polynomial fits do not make precise coefficients. Too few points, or a point without a
+    known error, give unknown coefficients.
     """
     x = np.asarray(x, dtype=float)
     y, sigma = np.array([(m.value, m.error) for m in points], dtype=float).reshape(-1, 2).T
-    if len(set(x)) < 2 or not np.all(np.isfinite(y) & np.isfinite(sigma) & (sigma > 0)):
-        return UNKNOWN, UNKNOWN
-    design = np.column_stack([x, np.ones_like(x)]) / sigma[:, None]
-    covariance = np.linalg.inv(design.T @ design)
-    slope, intercept = covariance @ design.T @ (y / sigma)
-    freedom = len(x) - 2
-    chi_squared = float(np.sum(((y - slope * x - intercept) / sigma) ** 2))
+    if len(set(x)) < degree + 1 or not np.all(np.isfinite(y) & np.isfinite(sigma) & (sigma > 0)):
+        return [UNKNOWN] * (degree + 1)
+    design = np.vander(x, degree + 1) / sigma[:, None]
+    coefficients, *_ = np.linalg.lstsq(design, y / sigma, rcond=None)
+    errors = np.sqrt(np.diag(np.linalg.pinv(design.T @ design)))
+    freedom = len(x) - degree - 1
+    chi_squared = float(np.sum((y / sigma - design @ coefficients) ** 2))
     factor = np.sqrt(max(1.0, chi_squared / freedom)) if freedom > 0 else 1.0
-    errors = factor * np.sqrt(np.diag(covariance))
-    return Measured(float(slope), float(errors[0])), Measured(float(intercept), float(errors[1]))
+    return [Measured(float(c), float(factor * e)) for c, e in zip(coefficients, errors)]
 
 
 def power_of(x, points):
     """Return the exponent of the power law through positive points (n `Measured`) at exact x > 0, as `Measured`."""
     if any(not m.value > 0 for m in points):
         return UNKNOWN
-    slope, _ = line_through(np.log(x), [Measured(float(np.log(m.value)), m.error / m.value) for m in points])
-    return slope
+    logarithms = [Measured(float(np.log(m.value)), m.error / m.value) for m in points]
+    return polynomial_through(np.log(x), logarithms, 1)[0]
+
+
+def steepest_place(x, points, draws=400, seed=1):
+    """Return where a curve through points (n `Measured`) at rising x (n,) rises fastest, as `Measured`.
+
+    It is the middle of the interval with the largest difference quotient. The error adds in squares the interval's half
+    width and the scatter of that middle when the points are drawn anew within their errors.
+    """
+    x = np.asarray(x, dtype=float)
+    values, errors = np.array([(m.value, m.error) for m in points], dtype=float).reshape(-1, 2).T
+    if len(x) < 3 or not np.all(np.isfinite(values) & np.isfinite(errors)):
+        return UNKNOWN
+    middles, widths = 0.5 * (x[1:] + x[:-1]), np.diff(x)
+    drawn = np.random.default_rng(seed).normal(values, errors, (draws, len(x)))
+    scatter = middles[np.argmax(np.diff(drawn, axis=1) / widths, axis=1)].std()
+    best = int(np.argmax(np.diff(values) / widths))
+    return Measured(float(middles[best]), float(np.hypot(widths[best] / 2, scatter)))

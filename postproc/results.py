@@ -47,7 +47,7 @@ def write_text(path, text):
 def as_markdown(campaign, title, sections):
     """Return the report of a `Campaign`: what was run, at what cost, then figures, claims and verdicts."""
     claims = [claim for section in sections for claim in section.claims]
-    parts = [f"## {title}: {campaign.plan['name']}", settings(campaign), f"Of {len(claims)} claims: {tally(claims)}."]
+    parts = [f"## {title} (`{campaign.plan['name']}`)", settings(campaign), f"Of {len(claims)} claims: {tally(claims)}."]
     return "\n\n".join(parts + [section_text(campaign, section) for section in sections]) + "\n"
 
 

@@ -1,0 +1,180 @@
+"""The figures of a Magnus campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
+
+import numpy as np
+
+from . import figures
+from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, plt
+from .magnus_claims import by_phi, lift_ratio, over_no_spin
+from .magnus_runs import at, curve, distributions, fields, quantity
+from .verdicts import Verdict
+
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, BLACK)
+MARKERS = "osD^vP"
+LINE_INCHES = 0.135  # height of a line of the caption
+VERDICT_COLOURS = {Verdict.REPRODUCED: GREEN, Verdict.NOT_REPRODUCED: VERMILLION, Verdict.NOT_DECIDED: "#666666"}
+
+
+def canvas(rows, columns, claims, *, width, height):
+    """Return (figure, axes (rows, columns)) with room for the claims below; `width`, `height` of the axes in inches."""
+    room = LINE_INCHES * (len(claims) + 1.5)
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height + room), squeeze=False)
+    figure.set_layout_engine("constrained", rect=(0, room / (height + room), 1, height / (height + room)))
+    for line, claim in enumerate(claims):
+        y = LINE_INCHES * (len(claims) - line) / (height + room)
+        text, colour = f"{claim.text} (paper: {claim.expected}): {claim.number}", VERDICT_COLOURS[claim.verdict]
+        figure.text(0.99, y, claim.verdict.value, fontsize=6, color=colour, weight="bold", ha="right")
+        figure.text(0.01, y, text, fontsize=6)
+    return figure, axes
+
+
+def draw_points(axes, x, points, **options):
+    """Draw `Measured` points with error bars of one standard error."""
+    values, errors = np.array([(m.value, m.error) for m in points]).reshape(-1, 2).T
+    errors = np.where(np.isfinite(errors), errors, 0)
+    axes.errorbar(x, values, errors, **{"markersize": 3, "capsize": 1.5, "linewidth": 0.7, **options})
+
+
+def draw_curves(axes, rows, by, key, name, label):
+    """Draw a quantity against `key`, one line for each value of `by`."""
+    for k, (value, group) in enumerate(rows.groupby(by, sort=True)):
+        x, points = curve(group, key, name)
+        draw_points(axes, x, points, color=COLOURS[k % 6], marker=MARKERS[k % 6], label=label.format(value))
+
+
+def against_speed(campaign, rows, claims):
+    """Fig. 2: D and N against V0, no spin."""
+    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.4)
+    draw_curves(left, rows, "phi", "v0", "drag", "Φ = {:g}")
+    draw_curves(right, rows, "phi", "v0", "contacts", "Φ = {:g}")
+    v0 = np.array([rows["v0"].min(), rows["v0"].max()])
+    scale = rows["drag"].max() / v0[1] ** 2
+    left.plot(v0, 0.4 * scale * v0**2, "--", color=BLACK, linewidth=0.7, label="slope 2")
+    left.set(xscale="log", yscale="log", xlabel="V0 [m/s]", ylabel="drag D [N]")
+    right.set(xlabel="V0 [m/s]", ylabel="contacts N", xlim=(0, None), ylim=(0, None))
+    left.legend()
+    return figure
+
+
+def spin_axis(axes):
+    """Draw the spin ratio on an axis that is linear up to 1 and logarithmic beyond."""
+    axes.set_xscale("symlog", linthresh=1, linscale=1)
+    axes.set_xlim(left=0)
+    axes.set_xlabel("spin ratio Ω")
+
+
+def lift_against_spin(campaign, rows, claims):
+    """Fig. 3: L/D against Ω, a panel for each Φ, a line for each V0."""
+    groups = list(by_phi(rows))
+    figure, axes = canvas(1, len(groups), claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
+    for panel, (phi, group) in zip(axes[0], groups):
+        draw_curves(panel, group, "v0", "spin_ratio", "lift_to_drag", "V0 = {:g} m/s")
+        panel.axhline(0, color=GREY, linewidth=0.6)
+        panel.set_title(f"Φ = {phi:g}")
+        spin_axis(panel)
+    share_y(axes[0])
+    axes[0, 0].set_ylabel("L/D")
+    axes[0, 0].legend()
+    return figure
+
+
+def share_y(axes):
+    """Give all axes the range that holds them all."""
+    low, high = zip(*(panel.get_ylim() for panel in axes))
+    for panel in axes:
+        panel.set_ylim(min(low), max(high))
+
+
+def drag_against_spin(campaign, rows, claims):
+    """Fig. 5: D_Ω/D_0 and N_Ω/N_0 against Ω."""
+    groups = list(by_phi(rows))
+    figure, axes = canvas(2, len(groups), claims, width=2 * figures.COLUMN_WIDTH, height=3.6)
+    for column, (phi, group) in zip(axes.T, groups):
+        for panel, name in zip(column, ("drag", "contacts")):
+            for k, (v0, one_speed) in enumerate(group.groupby("v0", sort=True)):
+                spins = sorted(one_speed["spin_ratio"].unique())
+                points = [over_no_spin(one_speed, name, spin) for spin in spins]
+                draw_points(panel, spins, points, color=COLOURS[k % 6], marker=MARKERS[k % 6], label=f"V0 = {v0:g} m/s")
+            panel.axhline(1, color=GREY, linewidth=0.6)
+            spin_axis(panel)
+        column[0].set_title(f"Φ = {phi:g}")
+    axes[0, 0].set_ylabel("D$_Ω$/D$_0$")
+    axes[1, 0].set_ylabel("N$_Ω$/N$_0$")
+    axes[0, 0].legend()
+    return figure
+
+
+def by_angle(campaign, rows, claims):
+    """Fig. 6: F_N/D_0, F_T/(μ F_N) and N_θ/N by angle."""
+    figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
+    still = quantity(at(rows, spin_ratio=0), "drag").value
+    for k, (spin, group) in enumerate(rows.groupby("spin_ratio", sort=True)):
+        theta, normal, tangential, contacts = (np.mean(a, axis=0) if a.ndim > 1 else a for a in distributions(campaign, group))
+        look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], markersize=2.5, linewidth=0.7, label=f"Ω = {spin:g}")
+        left.plot(theta / np.pi, normal / still, **look)
+        busy = normal > 1e-3 * normal.max()
+        middle.plot(theta[busy] / np.pi, tangential[busy] / (group["mu"].iloc[0] * normal[busy]), **look)
+        right.plot(theta / np.pi, contacts / contacts.sum(), **look)
+    for panel, label in ((left, "F$_N$/D$_0$"), (middle, "F$_T$/(μ F$_N$)"), (right, "N$_θ$/N")):
+        panel.set(xlabel="θ/π", ylabel=label, xlim=(-1, 1))
+        for side in (-0.5, 0.5):
+            panel.axvline(side, color=GREY, linewidth=0.6)
+    middle.set_ylim(-1.1, 1.1)
+    right.legend()
+    return figure
+
+
+def around_intruder(campaign, rows, claims):
+    """Fig. 7: speed with streamlines, area fraction and granular temperature around the intruder."""
+    spins = sorted(rows["spin_ratio"].unique())
+    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=6.2)
+    for column, spin in zip(axes.T, spins):
+        group = at(rows, spin_ratio=spin)
+        v0, phi = float(group["v0"].iloc[0]), float(group["phi"].iloc[0])
+        x, y, field = fields(campaign, group)
+        empty = field["phi"] < 0.02 * phi
+        speed = np.ma.masked_where(empty, np.hypot(field["vx"], field["vy"]) / v0)
+        heat = np.ma.masked_where(empty, field["temperature"] / (v0**2 * (1 + spin**2)))
+        images = [
+            column[0].pcolormesh(x, y, speed, cmap="viridis", vmin=0, vmax=1.5, rasterized=True),
+            column[1].pcolormesh(x, y, field["phi"], cmap="Greys", vmin=0, vmax=1, rasterized=True),
+            column[2].pcolormesh(x, y, heat, cmap="inferno", vmin=0, vmax=max_of(heat), rasterized=True),
+        ]
+        draw_streamlines(column[0], x, y, field, empty)
+        column[0].set_title(f"Ω = {spin:g}")
+        for panel, image in zip(column, images):
+            panel.add_patch(plt.Circle((0, 0), 2.5, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
+            panel.set(aspect="equal", xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+            figure.colorbar(image, ax=panel, shrink=0.8)
+    for panel, label in zip(axes[:, 0], ("|v − V|/V0", "area fraction", "T/(V0²(1 + Ω²))")):
+        panel.set_ylabel(f"{label}\ny/d")
+    for panel in axes[-1]:
+        panel.set_xlabel("x/d")
+    return figure
+
+
+def max_of(heat):
+    """Return the upper end of a colour scale that a few hot bins do not spoil."""
+    return float(np.quantile(heat.compressed(), 0.995)) if heat.count() else 1.0
+
+
+def draw_streamlines(axes, x, y, field, empty):
+    """Draw lines along the mean velocity relative to the intruder, where there are grains."""
+    vx, vy = (np.ma.masked_where(empty, np.nan_to_num(field[name])) for name in ("vx", "vy"))
+    axes.streamplot(x, y, vx, vy, density=0.7, color="white", linewidth=0.4, arrowsize=0.4)
+
+
+def lift_against_friction(campaign, rows, claims):
+    """Fig. 8: L∞/D∞ against μ with Eq. 9 and, from the measured κ of each point, Eq. 15."""
+    figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.8)
+    largest = float(rows["mu"].max())
+    axes.plot([0, largest], [0, largest], "--", color=BLACK, linewidth=0.8, label="Eq. 9: L$_∞$/D$_∞$ = μ")
+    for k, (phi, group) in enumerate(by_phi(rows)):
+        draw_points(
+            axes, *curve(group, "mu", "lift_to_drag"), color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="", label=f"Φ = {phi:g}"
+        )
+        mu, kappa = curve(group[group["mu"] > 0], "mu", "kappa")
+        model = [lift_ratio(k_.value, m) for m, k_ in zip(mu, kappa)]
+        axes.plot(mu, model, color=COLOURS[k % 6], linewidth=0.8, label="  Eq. 15, measured κ")
+    axes.set(xlabel="friction coefficient μ", ylabel="L$_∞$/D$_∞$")
+    axes.legend()
+    return figure
