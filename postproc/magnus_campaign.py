@@ -5,7 +5,7 @@ import numpy as np
 from . import figures, magnus_plots
 from .magnus_claims import angle_claims, drag_claims, friction_claims, lift_claims, speed_claims
 from .magnus_wake import wake_claims
-from .results import Section
+from .results import PlannedFigure
 
 TITLE = "Magnus effect: drag and lift on a spinning disk"
 SWEEPS = {
@@ -21,7 +21,8 @@ TIME_STEP, DIAMETER = 2e-6, 0.02  # of the study [s], [m]
 
 def report(campaign):
     """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
-    return [section for make in FIGURES for section in make(campaign)]
+    with figures.plt.rc_context(figures.STYLE):
+        return [planned.made(campaign) for planned in FIGURES if not campaign.sweep(planned.sweep).empty]
 
 
 def expected_core_seconds(parameters):
@@ -36,87 +37,61 @@ def expected_core_seconds(parameters):
     return float(grains * steps / np.interp(phi, *RATES))
 
 
-def section(campaign, sweep, title, name, caption, claims, draw):
-    """Return a list of one `Section` with its figure drawn; empty if the sweep has no runs yet."""
-    rows = campaign.sweep(sweep)
-    if rows.empty:
-        return []
-    tested = tuple(claims(rows))
-    with figures.plt.rc_context(figures.STYLE):
-        figures.save_as(draw(campaign, rows, tested), campaign.folder / "figures", f"{campaign.plan['name']}-{name}")
-    return [Section(title, name, caption, tested)]
-
-
-def speeds(campaign):
-    """Fig. 2."""
-    caption = "Mean drag and mean number of contacts of an intruder without spin against its speed. Paper: D ∝ V0², N linear when dilute."
-    return section(
-        campaign, "speed", "Fig. 2: drag and contacts against speed", "fig2", caption, speed_claims, magnus_plots.against_speed
-    )
-
-
-def lifts(campaign):
-    """Fig. 3."""
-    caption = "Lift over drag against the spin ratio Ω = ωR/V0; lift counts along −ω×V. Paper: zero at Ω = 0, steepest near 1, then flat."
-    return section(
-        campaign, "spin", "Fig. 3: lift over drag against spin", "fig3", caption, lift_claims, magnus_plots.lift_against_spin
-    )
-
-
-def drags(campaign):
-    """Fig. 5."""
-    caption = "Drag and contacts over their values without spin. Paper: drag constant when dilute, rising when dense; fewer contacts at large Ω."
-    return section(
-        campaign, "spin", "Fig. 5: drag and contacts against spin", "fig5", caption, drag_claims, magnus_plots.drag_against_spin
-    )
-
-
-def angles(campaign):
-    """Fig. 6."""
-    caption = (
-        "Normal force, tangential force over its limit, and contacts by angle from V, in 24 bins; θ counts counter-clockwise for ω > 0 and "
-        "F_T > 0 opposes the spin. Paper: contacts in front only, all of them slipping at large Ω."
-    )
-    return section(
-        campaign,
+FIGURES = (
+    PlannedFigure(
+        "fig2",
+        "speed",
+        "Fig. 2: drag and contacts against speed",
+        "Mean drag and mean number of contacts of an intruder without spin against its speed. Paper: D ∝ V0², N linear when"
+        " dilute.",
+        speed_claims,
+        magnus_plots.against_speed,
+    ),
+    PlannedFigure(
+        "fig3",
+        "spin",
+        "Fig. 3: lift over drag against spin",
+        "Lift over drag against the spin ratio Ω = ωR/V0; lift counts along −ω×V. Paper: zero at Ω = 0, steepest near 1,"
+        " then flat.",
+        lift_claims,
+        magnus_plots.lift_against_spin,
+    ),
+    PlannedFigure(
+        "fig5",
+        "spin",
+        "Fig. 5: drag and contacts against spin",
+        "Drag and contacts over their values without spin. Paper: drag constant when dilute, rising when dense; fewer"
+        " contacts at large Ω.",
+        drag_claims,
+        magnus_plots.drag_against_spin,
+    ),
+    PlannedFigure(
+        "fig6",
         "angles",
         "Fig. 6: forces and contacts by angle",
-        "fig6",
-        caption,
-        lambda rows: angle_claims(campaign, rows),
+        "Normal force, tangential force over its limit, and contacts by angle from V, in 24 bins; θ counts"
+        " counter-clockwise for ω > 0 and F_T > 0 opposes the spin. Paper: contacts in front only, all of them slipping at"
+        " large Ω.",
+        angle_claims,
         magnus_plots.by_angle,
-    )
-
-
-def flows(campaign):
-    """Fig. 7."""
-    caption = (
-        "Velocity relative to the intruder with streamlines, area fraction, granular temperature; V along +x, ω > 0. Paper: the wake has an "
-        "empty core, widens and bends with spin; grains are hottest on the advancing side at Ω = 10, on the retreating side at Ω = 1."
-    )
-    return section(
-        campaign,
+    ),
+    PlannedFigure(
+        "fig7",
         "fields",
         "Fig. 7: fields around the intruder",
-        "fig7",
-        caption,
-        lambda rows: wake_claims(campaign, rows),
+        "Velocity relative to the intruder with streamlines, area fraction, granular temperature; V along +x, ω > 0. Paper:"
+        " the wake has an empty core, widens and bends with spin; grains are hottest on the advancing side at Ω = 10, on"
+        " the retreating side at Ω = 1.",
+        wake_claims,
         magnus_plots.around_intruder,
-    )
-
-
-def frictions(campaign):
-    """Fig. 8."""
-    caption = "Saturated lift over drag against friction, with the model: Eq. 9 (dilute) and Eq. 15 with the measured κ = ΣF_N cos θ/D∞."
-    return section(
-        campaign,
+    ),
+    PlannedFigure(
+        "fig8",
         "friction",
         "Fig. 8: lift over drag against friction",
-        "fig8",
-        caption,
+        "Saturated lift over drag against friction, with the model: Eq. 9 (dilute) and Eq. 15 with the measured"
+        " κ = ΣF_N cos θ/D∞.",
         friction_claims,
         magnus_plots.lift_against_friction,
-    )
-
-
-FIGURES = (speeds, lifts, drags, angles, flows, frictions)
+    ),
+)

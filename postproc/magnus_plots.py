@@ -50,6 +50,7 @@ def against_speed(campaign, rows, claims):
     scale = rows["drag"].max() / v0[1] ** 2
     left.plot(v0, 0.4 * scale * v0**2, "--", color=BLACK, linewidth=0.7, label="slope 2")
     left.set(xscale="log", yscale="log", xlabel="V0 [m/s]", ylabel="drag D [N]")
+    plain_ticks(left, sorted(rows["v0"].unique()))
     right.set(xlabel="V0 [m/s]", ylabel="contacts N", xlim=(0, None), ylim=(0, None))
     left.legend()
     return figure
@@ -57,9 +58,17 @@ def against_speed(campaign, rows, claims):
 
 def spin_axis(axes):
     """Draw the spin ratio on an axis that is linear up to 1 and logarithmic beyond."""
-    axes.set_xscale("symlog", linthresh=1, linscale=1)
-    axes.set_xlim(left=0)
+    axes.set_xscale("symlog", linthresh=1, linscale=0.7)
+    axes.set_xlim(0, 1.15 * axes.dataLim.x1)
+    plain_ticks(axes, [0, 0.5, 1, 2, 5, 10, 20])
     axes.set_xlabel("spin ratio Ω")
+
+
+def plain_ticks(axes, ticks):
+    """Label these values on a logarithmic x axis, as they are, and no others."""
+    low, high = axes.get_xlim()
+    axes.set_xticks([t for t in ticks if low <= t <= high], [f"{t:g}" for t in ticks if low <= t <= high])
+    axes.set_xticks([], minor=True)
 
 
 def lift_against_spin(campaign, rows, claims):
@@ -108,7 +117,8 @@ def by_angle(campaign, rows, claims):
     figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
     still = quantity(at(rows, spin_ratio=0), "drag").value
     for k, (spin, group) in enumerate(rows.groupby("spin_ratio", sort=True)):
-        theta, normal, tangential, contacts = (np.mean(a, axis=0) if a.ndim > 1 else a for a in distributions(campaign, group))
+        theta, *repeats = distributions(campaign, group)
+        normal, tangential, contacts = (values.mean(axis=0) for values in repeats)
         look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], markersize=2.5, linewidth=0.7, label=f"Ω = {spin:g}")
         left.plot(theta / np.pi, normal / still, **look)
         busy = normal > 1e-3 * normal.max()
@@ -126,7 +136,7 @@ def by_angle(campaign, rows, claims):
 def around_intruder(campaign, rows, claims):
     """Fig. 7: speed with streamlines, area fraction and granular temperature around the intruder."""
     spins = sorted(rows["spin_ratio"].unique())
-    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=6.2)
+    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=5.4)
     for column, spin in zip(axes.T, spins):
         group = at(rows, spin_ratio=spin)
         v0, phi = float(group["v0"].iloc[0]), float(group["phi"].iloc[0])
@@ -168,13 +178,13 @@ def lift_against_friction(campaign, rows, claims):
     figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.8)
     largest = float(rows["mu"].max())
     axes.plot([0, largest], [0, largest], "--", color=BLACK, linewidth=0.8, label="Eq. 9: L$_∞$/D$_∞$ = μ")
+    axes.plot([], [], color=GREY, linewidth=0.8, label="Eq. 15, measured κ")
     for k, (phi, group) in enumerate(by_phi(rows)):
-        draw_points(
-            axes, *curve(group, "mu", "lift_to_drag"), color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="", label=f"Φ = {phi:g}"
-        )
+        look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="", label=f"Φ = {phi:g}")
+        draw_points(axes, *curve(group, "mu", "lift_to_drag"), **look)
         mu, kappa = curve(group[group["mu"] > 0], "mu", "kappa")
-        model = [lift_ratio(k_.value, m) for m, k_ in zip(mu, kappa)]
-        axes.plot(mu, model, color=COLOURS[k % 6], linewidth=0.8, label="  Eq. 15, measured κ")
+        model = [lift_ratio(found.value, m) for m, found in zip(mu, kappa)]
+        axes.plot(mu, model, color=COLOURS[k % 6], linewidth=0.8)
     axes.set(xlabel="friction coefficient μ", ylabel="L$_∞$/D$_∞$")
     axes.legend()
     return figure

@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from . import figures
 from .reader import RunError
 from .verdicts import tally
 
@@ -34,6 +35,30 @@ class Section:
     claims: tuple
 
 
+@dataclass(frozen=True)
+class PlannedFigure:
+    """How a figure of a report is made: its file's `name`, the `sweep` that it shows, title, caption, and two functions.
+
+    `claims(campaign, rows)` tests the paper's claims on the sweep's rows, `draw(campaign, rows, claims)` returns the figure.
+    """
+
+    name: str
+    sweep: str
+    title: str
+    caption: str
+    claims: object
+    draw: object
+
+    def made(self, campaign):
+        """Draw the figure into the campaign's folder `figures`; return its `Section`."""
+        rows = campaign.sweep(self.sweep)
+        claims = tuple(self.claims(campaign, rows))
+        figures.save_as(
+            self.draw(campaign, rows, claims), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}"
+        )
+        return Section(self.title, self.name, self.caption, claims)
+
+
 def write_text(path, text):
     """Write a text file in one step: a reader sees the old one or the new one."""
     temporary = path.with_name(f".{path.name}.tmp")
@@ -47,7 +72,11 @@ def write_text(path, text):
 def as_markdown(campaign, title, sections):
     """Return the report of a `Campaign`: what was run, at what cost, then figures, claims and verdicts."""
     claims = [claim for section in sections for claim in section.claims]
-    parts = [f"## {title} (`{campaign.plan['name']}`)", settings(campaign), f"Of {len(claims)} claims: {tally(claims)}."]
+    parts = [
+        f"## {title} (`{campaign.plan['name']}`)",
+        settings(campaign),
+        f"Of {len(claims)} claims: {tally(claims)}.",
+    ]
     return "\n\n".join(parts + [section_text(campaign, section) for section in sections]) + "\n"
 
 
@@ -94,9 +123,7 @@ def section_text(campaign, section):
     image = f"![{section.title}](figures/{campaign.plan['name']}-{section.figure}.png)"
     heading = "| claim | source | expected | measured | rule | verdict | settings | runs, core-s |"
     rows = [claim_row(campaign.table, claim) for claim in section.claims]
-    return "\n\n".join(
-        [f"### {section.title}", image, section.caption, "\n".join([heading, "|---" * 8 + "|", *rows])]
-    )
+    return "\n\n".join([f"### {section.title}", image, section.caption, "\n".join([heading, "|---" * 8 + "|", *rows])])
 
 
 def claim_row(table, claim):
@@ -131,7 +158,9 @@ def report_of(folder):
     try:
         return Campaign.of(folder).plan["name"], (folder / "report.md").read_text(encoding="utf-8").strip()
     except FileNotFoundError:
-        raise RunError(f"{folder} holds no report.md: call scripts/campaign first, with a `report:` in its file") from None
+        raise RunError(
+            f"{folder} holds no report.md: call scripts/campaign first, with a `report:` in its file"
+        ) from None
 
 
 def stored_sections(target):
@@ -140,13 +169,13 @@ def stored_sections(target):
     return {match["name"]: match["text"] for match in SECTIONS.finditer(text)}
 
 
-def copy_figures(folder, figures):
+def copy_figures(folder, target):
     """Copy the PNG figures of a campaign, each in one step."""
-    figures.mkdir(exist_ok=True)
+    target.mkdir(exist_ok=True)
     for source in sorted((folder / "figures").glob("*.png")):
-        temporary = figures / f".{source.name}.tmp"
+        temporary = target / f".{source.name}.tmp"
         shutil.copyfile(source, temporary)
-        os.replace(temporary, figures / source.name)
+        os.replace(temporary, target / source.name)
 
 
 def main(arguments):

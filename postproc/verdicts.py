@@ -77,7 +77,9 @@ class Between:
     def __str__(self):
         if np.isinf(self.high):
             return f"above {self.low:g} by 2σ"
-        return f"below {self.high:g} by 2σ" if np.isinf(self.low) else f"between {self.low:g} and {self.high:g}, 2σ inside"
+        return (
+            f"below {self.high:g} by 2σ" if np.isinf(self.low) else f"between {self.low:g} and {self.high:g}, 2σ inside"
+        )
 
 
 def above(bound):

@@ -8,7 +8,9 @@ import numpy as np
 
 
 THETA = (np.arange(24) + 0.5) * np.pi / 12 - np.pi
-KEYS = dict(phi=0.352, v0=1.0, spin_ratio=0.0, mu=0.5, width=300.0, height=200.0, travel=300.0, dt_factor=1.0, fields=0, seed=1)
+KEYS = dict(
+    phi=0.352, v0=1.0, spin_ratio=0.0, mu=0.5, width=300.0, height=200.0, travel=300.0, dt_factor=1.0, fields=0, seed=1
+)
 KAPPA = {0.135: 1.0, 0.352: 0.95, 0.585: 0.93, 0.818: 0.90}
 
 

@@ -75,7 +75,16 @@ def carry_out(folder, plan, cores, options):
     Snakemake gets a process group of its own, so that each run hears of Ctrl-C, or of a SIGTERM, exactly once.
     """
     set_marks(folder, plan)
-    command = [sys.executable, "-m", "snakemake", "--snakefile", SNAKEFILE, "--directory", folder, *ours(cores, options)]
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        SNAKEFILE,
+        "--directory",
+        folder,
+        *ours(cores, options),
+    ]
     child = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, process_group=0, preexec_fn=hear_interrupts, env=environment()
     )

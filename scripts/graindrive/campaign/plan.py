@@ -45,8 +45,10 @@ class PlannedRun:
 
 @dataclass(frozen=True)
 class Plan:
-    """A campaign: its name, its file (from the top of the checkout if it is there), the folder from which its values name files, the study's name and file, the report's name
-    ("" for none), the runs in the order of the YAML.
+    """A campaign.
+
+    `file` is named from the top of the checkout if it lies there; `origin` is the folder from which values name files;
+    `report` is "" for none; the runs stand in the order of the YAML.
     """
 
     name: str
