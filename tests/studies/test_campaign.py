@@ -91,7 +91,7 @@ def wait_for(text, read, process):
 def test_an_interrupt_ends_all_and_the_next_call_goes_on(place):
     sweeps = "  a: {seed: 21, fault: slow, steps: 4000}\n"
     process = place.start(sweeps)
-    wait_for("toy:  10 %", lambda: place.log("seed_21") if list(place.path.glob("toy/logs/*.log")) else "", process)
+    wait_for("toy:  20 %", lambda: place.log("seed_21") if list(place.path.glob("toy/logs/*.log")) else "", process)
     process.send_signal(signal.SIGINT)
     _, words = process.communicate(timeout=60)
     assert process.returncode == 130 and "kept for the next call" in words

@@ -64,7 +64,7 @@ def test_names_tell_what_is_unusual_and_end_with_the_digest(plan):
 def test_names_of_many_long_values_stay_short_and_different(plan):
     found = plan(
         GOOD.replace(
-            "[1, 2]", "[1, 2], dt_factor: [1.23456789, 1.23456788], period: 3.33333333, vtk: 1, fault: slow, loop: yade"
+            "[1, 2]", "[1, 2], dt_factor: [1.23456789, 1.23456788], period: 3.33333333, fault: slow, loop: yade"
         )
     )
     names = [run.name for run in found.runs]
