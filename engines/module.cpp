@@ -10,6 +10,7 @@ void bind_packing();
 void bind_functors();
 void bind_drives();
 void bind_measures();
+void bind_fields();
 void bind_loop();
 }  // namespace graindrive
 
@@ -24,6 +25,7 @@ static void register_everything()
 	graindrive::bind_functors();
 	graindrive::bind_drives();
 	graindrive::bind_measures();
+	graindrive::bind_fields();
 	graindrive::bind_loop();
 }
 

@@ -2,10 +2,10 @@
 
 import sys
 
-from . import wiggle
+from . import magnus, wiggle
 from .reader import Run, RunError
 
-FIGURES = {"wiggle": wiggle.draw}
+FIGURES = {"wiggle": wiggle.draw, "magnus": magnus.draw}
 
 
 def main(arguments):

@@ -84,6 +84,14 @@ class Run:
                 key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
             }
 
+    def labels(self, name):
+        """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""
+        with h5py.File(self.path / "run.h5", "r") as file:
+            if name not in file:
+                return {}, {}
+            units = {key: item.attrs["unit"] for key, item in file[name].items() if "unit" in item.attrs}
+            return units, {key: plain(value) for key, value in file[name].attrs.items()}
+
     def at(self, t, *names):
         """Return the named series at time `t`, interpolated linearly."""
         return [float(np.interp(t, self.series["t"], self.series[name])) for name in names]

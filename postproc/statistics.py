@@ -49,6 +49,40 @@ def block_mean(samples):
     return Mean(mean, float(errors[level]), 2**level, bool(passes.any()))
 
 
+def ratio_mean(numerator, denominator):
+    """Return the `Mean` of mean(numerator)/mean(denominator) of two series (n,) that are correlated with each other.
+
+    Delta method: to first order the ratio R deviates by the mean of (a_i - R b_i)/mean(b), whose error blocking gives. NaN
+    where the denominator's mean is 0.
+    """
+    a, b = np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
+    if b.mean() == 0:
+        return Mean(float("nan"), float("nan"), 1, False)
+    ratio = float(a.mean() / b.mean())
+    deviation = block_mean((a - ratio * b) / b.mean())
+    return Mean(ratio, deviation.error, deviation.block_length, deviation.resolved)
+
+
+def steady_start(samples, *, parts=20, at_most=0.5, deviations=3.0):
+    """Return (samples to leave out at the start of a series (n,) as its transient, whether what is left is steady).
+
+    Geweke's test (1992): the means of the first fifth and of the last half of what is left must agree within so many
+    standard errors, by blocking; the first multiple of n/`parts` that passes is taken, up to `at_most` of the series. It
+    cuts nothing that noise explains, and takes a drift below that noise for the steady state.
+    """
+    x = np.asarray(samples, dtype=float)
+    cuts = [k * len(x) // parts for k in range(int(at_most * parts) + 1)]
+    return next(((cut, True) for cut in cuts if halves_agree(x[cut:], deviations)), (cuts[-1], False))
+
+
+def halves_agree(x, deviations):
+    """True if the means of the first fifth and of the last half of (n,) samples agree; too few samples agree."""
+    if len(x) < 5 * FEWEST_BLOCKS:
+        return True
+    early, late = block_mean(x[: len(x) // 5]), block_mean(x[len(x) // 2 :])
+    return abs(early.value - late.value) <= deviations * np.hypot(early.error, late.error)
+
+
 def blocking_levels(x):
     """Return (n_k, σ_k², term of M_k) of all levels of pairwise averaging with at least two blocks."""
     counts, variances, terms = [], [], []

@@ -3,13 +3,14 @@
 #include <memory>
 
 #include "engines/base/contact_view.hpp"
+#include "engines/base/grain_view.hpp"
 #include "engines/loop/stepper.hpp"
 #include "engines/loop/yade_scene.hpp"
 #include "engines/seam/registered.hpp"
 
 namespace graindrive {
 
-class GrainLoop : public Registered<GrainLoop>, public ContactSource {
+class GrainLoop : public Registered<GrainLoop>, public ContactSource, public GrainSource {
 public:
 	static constexpr const char* class_name = "GrainLoop";
 	static const char* const documentation;
@@ -54,6 +55,7 @@ public:
 
 	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
 	Wrench wrench_on(int body) override;
+	void look(SceneView& view, bool with_contacts) override;
 
 	/// Writes the loop's state into all of YADE's bodies.
 	void sync();
@@ -104,6 +106,7 @@ private:
 	void require_bodies(bool all) const;
 	void require_alone() const;
 	int body_index(int id);
+	void add_grains(SceneView& view) const;
 };
 
 }  // namespace graindrive

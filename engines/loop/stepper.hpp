@@ -75,6 +75,8 @@ public:
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
 	std::vector<Contact> contacts() const;
+	/// Contacts at the present positions, before anything moves: the forces that the next step will find, to the last bit.
+	std::vector<Contact> present_contacts();
 	/// Appends the contacts on a body, as of the last `compute_body_forces` or step.
 	void touches_on(std::size_t body, std::vector<Touch>& touches) const;
 

@@ -100,6 +100,31 @@ TEST(Stepper, gives_the_same_bits_on_any_number_of_threads_and_in_any_portions)
 	}
 }
 
+TEST(Stepper, shows_before_a_step_the_contacts_that_the_step_will_find)
+{
+	for (const Precision precision : { Precision::double_, Precision::single })
+		for (const int threads : { 1, 2 }) {
+			Scene scene = crowd(16, 5, 2);
+			scene.precision = precision;
+			scene.threads = threads;
+			Stepper looking(scene), plain(scene);
+			std::size_t seen = 0;
+			for (int k = 0; k < 200; ++k) {
+				const auto before = looking.present_contacts();
+				looking.step(1), plain.step(1);
+				const auto after = looking.contacts();
+				ASSERT_EQ(before.size(), after.size());
+				seen += before.size();
+				for (std::size_t c = 0; c < before.size(); ++c) {
+					ASSERT_EQ(before[c].normal, after[c].normal);
+					ASSERT_EQ(before[c].friction, after[c].friction);
+				}
+			}
+			EXPECT_GT(seen, 10000u);
+			EXPECT_TRUE(same_bits(looking, plain)) << "looking changed the motion";
+		}
+}
+
 TEST(Stepper, conserves_momentum)
 {
 	Stepper loop(crowd(12, 6));

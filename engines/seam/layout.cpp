@@ -337,8 +337,19 @@ private:
 		flag("Scene", "isPeriodic", scene, offsetof(yade::Scene, isPeriodic));
 		points_to("Scene.bodies", scene, offsetof(yade::Scene, bodies), "vtable for yade::BodyContainer");
 		points_to("Scene.interactions", scene, offsetof(yade::Scene, interactions), "vtable for yade::InteractionContainer");
+		points_to("Scene.cell", scene, offsetof(yade::Scene, cell), "vtable for yade::Cell");
+		cell();
 		engine_list();
 		forces(scene);
+	}
+	void cell()
+	{
+#ifndef GRAINDRIVE_YADE_HEADERS  // there it is private
+		py::object cell = make("Cell");
+		const Real edges[3] = { next(), next(), next() };
+		cell.attr("setBox")(edges[0], edges[1], edges[2]);
+		holds("Cell._size", cell, offsetof(yade::Cell, _size), raw(edges));
+#endif
 	}
 	void points_to(const string& member, const py::object& object, std::size_t offset, const string& vtable)
 	{

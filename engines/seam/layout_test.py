@@ -9,7 +9,8 @@ import pytest
 from graindrive import engines
 
 MEMBERS = engines.proven_members()
-STRUCTURES = {"Scene.bodies", "Scene.interactions", "Scene.engines", "Scene.forces"}  # recognised by what they point at
+# Recognised by what they point at:
+STRUCTURES = {"Scene.bodies", "Scene.interactions", "Scene.cell", "Scene.engines", "Scene.forces"}
 SIZES = {name for name in MEMBERS if name.endswith(".size")}
 
 FACTS = {

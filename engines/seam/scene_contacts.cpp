@@ -16,9 +16,8 @@ yade::Body& body_of(const yade::Scene& scene, int id, const std::string& who)
 ContactSource& SceneContacts::of(yade::Scene* scene)
 {
 	scene_ = scene;
-	for (const auto& engine : scene->engines)
-		if (auto* source = dynamic_cast<ContactSource*>(engine.get()); source && !engine->dead) return *source;
-	return *this;
+	auto* loop = running_loop<ContactSource>(*scene);
+	return loop ? *loop : *this;
 }
 
 /// Asked anew every step: members may be erased, released or added.

@@ -23,6 +23,20 @@ private:
 	std::vector<int> members_;
 };
 
+/// The engine of O.engines that answers in place of YADE's own containers (GrainLoop), or null.
+///
+/// It is told its scene: YADE does so only when the engine's own turn comes, and after O.load it still knows the scene before.
+template <class Source>
+Source* running_loop(yade::Scene& scene)
+{
+	for (const auto& engine : scene.engines)
+		if (auto* source = dynamic_cast<Source*>(engine.get()); source && !engine->dead) {
+			engine->scene = &scene;
+			return source;
+		}
+	return nullptr;
+}
+
 /// The body of that id.
 /// @throws std::runtime_error naming `who` if it does not exist (any more)
 yade::Body& body_of(const yade::Scene& scene, int id, const std::string& who);

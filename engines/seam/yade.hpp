@@ -4,6 +4,7 @@
 #include <boost/python.hpp>
 #include <core/Body.hpp>
 #include <core/BodyContainer.hpp>
+#include <core/Cell.hpp>
 #include <core/Clump.hpp>
 #include <core/Engine.hpp>
 #include <core/ForceContainer.hpp>

@@ -262,6 +262,15 @@ public:
 
 class InteractionContainer;
 
+/// The periodic cell.
+class Cell : public Serializable {
+	char transformations_[216];
+
+public:
+	Vector3r _size;
+	const Vector3r& getSize() const { return _size; }  ///< lengths of its edges [m]
+};
+
 class Scene : public Serializable {
 	int host_name_max_;
 
@@ -294,6 +303,12 @@ private:
 public:
 	shared_ptr<BodyContainer> bodies;
 	shared_ptr<InteractionContainer> interactions;
+
+private:
+	char energy_materials_bound_[56];
+
+public:
+	shared_ptr<Cell> cell;
 };
 
 /// What dispatchers call for a pair of types.

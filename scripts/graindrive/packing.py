@@ -79,13 +79,15 @@ def keep_clear(recipe):
     from matplotlib.path import Path
 
     beads, outline = np.array(recipe.beads), np.array(recipe.outline)
+    ring = np.c_[beads, np.full(len(beads), recipe.bead_radius)]
+    if len(outline) == 0:  # a single disk
+        return ring
     step = recipe.d_min / 4
     (x0, y0), (x1, y1) = outline.min(axis=0), outline.max(axis=0)
     grid = np.stack(np.meshgrid(np.arange(x0, x1, step), np.arange(y0, y1, step)), axis=-1).reshape(-1, 2)
     inside = grid[Path(outline).contains_points(grid, radius=-1e-9)]
     inside = inside[distance_to(outline, inside) > step]
-    rows = [np.c_[beads, np.full(len(beads), recipe.bead_radius)], np.c_[inside, np.full(len(inside), step)]]
-    return np.concatenate(rows)
+    return np.concatenate([ring, np.c_[inside, np.full(len(inside), step)]])
 
 
 def distance_to(outline, points):

@@ -1,6 +1,7 @@
 """Two-dimensional scenes of disks in YADE: grains, a frozen base, a clump of beads, and the loop that moves them."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -41,11 +42,26 @@ def add_disks(x, y, radii, density, blocked=IN_PLANE):
     return O.bodies.append([disk(*row, density, blocked) for row in zip(x, y, radii)])
 
 
-def add_base(width, diameter, density):
-    """Add a row of frozen disks at y = 0 that joins itself across the periodic side; return their ids."""
+def row(width, diameter):
+    """Return x of a row of touching disks that joins itself across the periodic side, shape (n,)."""
     count = max(1, round(width / diameter))
-    x = (np.arange(count) + 0.5) * width / count
-    return add_disks(x, np.zeros(count), np.full(count, diameter / 2), density, "xyzXYZ")
+    return (np.arange(count) + 0.5) * width / count
+
+
+def add_base(width, diameter, density, y=0.0):
+    """Add a row of frozen disks at height `y` that joins itself across the periodic side; return their ids."""
+    x = row(width, diameter)
+    return add_disks(x, np.full(len(x), y), np.full(len(x), diameter / 2), density, "xyzXYZ")
+
+
+def add_wall_clump(width, diameter, density, y, blocked="xyzXYZ"):
+    """Add the same row as one clump, a rough wall that a drive or a load moves as a whole; return the clump's id."""
+    x = row(width, diameter)
+    mass = len(x) * density * math.pi * diameter**2 / 4
+    beads = np.c_[x - width / 2, np.zeros(len(x))]
+    inertia = mass * (np.mean(beads[:, 0] ** 2) + diameter**2 / 8)
+    wall = SimpleNamespace(beads=beads, bead_radius=diameter / 2, mass=mass, inertia=inertia)
+    return add_intruder(wall, width / 2, y, blocked)
 
 
 def add_intruder(clump, x, y, blocked="xyzXYZ"):
@@ -63,6 +79,40 @@ def add_intruder(clump, x, y, blocked="xyzXYZ"):
     state.inertia = Vector3(1, 1, 1) * clump.inertia
     state.blockedDOFs = blocked
     return id_
+
+
+def set_motion(ids, vy):
+    """Give free disks the velocities vy along y, one or (n,), and no other motion."""
+    from yade import O
+    from yade.minieigenHP import Vector3
+
+    loop = fast_loop()
+    if loop:
+        loop.sync()
+    for id_, speed in zip(ids, np.broadcast_to(vy, len(ids))):
+        state = O.bodies[id_].state
+        state.vel, state.angVel = Vector3(0, float(speed), 0), Vector3.Zero
+    if loop:
+        loop.read()
+
+
+def members(clump):
+    """Return the ids of a clump's disks."""
+    from yade import O
+
+    return sorted(O.bodies[clump].shape.members)
+
+
+def load_on(body, force):
+    """Let a constant force (x, y, z) act on a body that is free to follow, under either loop."""
+    from yade import O
+    from yade import wrapper as w
+
+    loop = fast_loop()
+    if loop:
+        loop.setLoad(body, force)
+    else:
+        O.engines = [*O.engines[:-1], w.ForceEngine(ids=[body], force=force), O.engines[-1]]
 
 
 def yade_loop(material, gravity, between=(), damping=0.0):
@@ -86,17 +136,18 @@ def yade_loop(material, gravity, between=(), damping=0.0):
     ]
 
 
-def run_on(loop, material, gravity, between=(), precision="double", largest_overlap=0.1):
+def run_on(loop, material, gravity, between=(), precision="double", largest_overlap=0.1, threads=None):
     """Put the loop of that name into O.engines: "yade" (the reference) or "grain" (fast, the same physics).
 
-    GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius.
+    GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius; it takes as many
+    `threads` as YADE was started with, unless they are given. Results have the same bits for any number.
     """
     from yade import O
 
     yade_loop(material, gravity, between)
     if loop == "grain":
         grain_loop.use_grain_loop(
-            precision=precision, threads=O.numThreads, largestOverlap=largest_overlap, label="loop"
+            precision=precision, threads=threads or O.numThreads, largestOverlap=largest_overlap, label="loop"
         )
 
 
@@ -168,7 +219,7 @@ def picture(grains, base, intruder):
     """Return the scene of this moment for a run folder: (grains and base, contacts), dicts of arrays of shape (n,).
 
     `grains` and `base` are ids; the first dict adds to `rows_of` the role: 0 grain, 1 base. Contacts name their sides by
-    place in those arrays, -1 for a member of the clump `intruder`; those between two of neither are left out.
+    place in those arrays, -1 for the disk `intruder` or a member of that clump; those between two of neither are left out.
     """
     from yade import O
 
@@ -177,7 +228,7 @@ def picture(grains, base, intruder):
     place = np.full(len(O.bodies), -2)
     place[shown] = np.arange(len(shown))
     table = engines.body_table(O._sceneObj)
-    place[table["id"][table["clump"] == intruder]] = -1
+    place[table["id"][table["clump"] == intruder]] = place[intruder] = -1
     loop = fast_loop()
     contacts = loop.contacts() if loop else engines.contact_table(O._sceneObj)
     i, j = place[contacts["i"]], place[contacts["j"]]

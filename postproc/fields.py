@@ -1,0 +1,116 @@
+"""Fields of a run folder (area fraction, velocity, temperature, stress on a grid), and their maps and streamlines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .figures import BLACK
+from .reader import RunError
+
+LABELS = {
+    "area_fraction": r"$\Phi$",
+    "density": r"$\rho$",
+    "temperature": r"$T_g$",
+    "pressure": r"$P$",
+    "speed": r"$|\mathbf{v}|$",
+}
+UNITS = {
+    "d": "$d$",
+    "sqrt(g d)": r"$\sqrt{g d}$",
+    "g d": "$g d$",
+    "rho": r"$\rho$",
+    "rho g d": r"$\rho g d$",
+    "m^2/s^2": "m$^2$/s$^2$",
+    "kg/m^2": "kg/m$^2$",
+}
+
+
+@dataclass(frozen=True)
+class Fields:
+    """What a FieldAverager saw: `arrays` maps names to arrays (phases, ny, nx), vectors (…, 2), stresses (…, 2, 2).
+
+    `x` (nx,) and `y` (ny,) are the middles of the bins from the window's origin, `samples` (phases,) counts frames,
+    `units` maps names to units, `settings` are the averager's (kernel, spacing, width, phases …).
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    samples: np.ndarray
+    arrays: dict
+    units: dict
+    settings: dict
+
+    def map(self, name, phase=None):
+        """Return one scalar field as (ny, nx): of a phase, or the mean over phases weighted by their samples.
+
+        `name` is that of an array, "speed" or "pressure" …; nan where it is unknown. Raises RunError for other names.
+        """
+        known = self.scalars()
+        if name not in known:
+            raise RunError(f"these fields hold {', '.join(sorted(known))}; there is no {name}")
+        return self.of_phase(known[name], phase)
+
+    def scalars(self):
+        """Return {name: (phases, ny, nx)} of all scalar fields, the speed of the mean velocity among them."""
+        found = {name: array for name, array in self.arrays.items() if array.ndim == 3}
+        if "velocity" in self.arrays:
+            found["speed"] = np.hypot(*np.moveaxis(self.arrays["velocity"], -1, 0))
+        return found
+
+    def velocity(self, phase=None):
+        """Return (v_x, v_y), each (ny, nx): of a phase, or the mean over phases weighted by the grains that were there."""
+        components = np.moveaxis(self.arrays["velocity"], -1, 0)
+        return tuple(self.of_phase(component, phase, self.arrays["area_fraction"]) for component in components)
+
+    def of_phase(self, array, phase, weight=1.0):
+        """Return a phase of (phases, ny, nx), or the mean over phases by samples and `weight`; nan where nothing is."""
+        if phase is not None:
+            return array[phase]
+        weights = self.samples[:, None, None] * weight * np.isfinite(array)
+        total = np.nansum(weights, axis=0)
+        with np.errstate(invalid="ignore"):
+            return np.nansum(weights * array, axis=0) / np.where(total > 0, total, np.nan)
+
+
+def read(run, name):
+    """Return the `Fields` that a run (reader.Run) stored under `fields/NAME`; RunError if there are none."""
+    arrays, units, settings = run.group(f"fields/{name}"), *run.labels(f"fields/{name}")
+    if not {"x", "y", "samples"} <= arrays.keys():
+        raise RunError(f"{run.path} holds no fields of the name {name}")
+    x, y, samples = (arrays.pop(key) for key in ("x", "y", "samples"))
+    return Fields(x, y, samples, arrays, units, settings)
+
+
+def draw_map(axes, fields, name, phase=None, **options):
+    """Draw a scalar field as squares of the averager's bins with a colour bar; return the mesh.
+
+    `options` go to pcolormesh: cmap, norm, vmin, vmax. Bins in which no grain was stay white. Figures of several maps want
+    layout="compressed".
+    """
+    options = {"cmap": "YlGnBu", "rasterized": True, "shading": "nearest", **options}
+    mesh = axes.pcolormesh(fields.x, fields.y, np.ma.masked_invalid(fields.map(name, phase)), **options)
+    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.05, aspect=25)
+    bar.set_label(labelled(LABELS.get(name, name), fields.units.get("velocity" if name == "speed" else name)))
+    bar.ax.minorticks_off()
+    axes.set(aspect="equal", xlabel=labelled("$x$", fields.units["x"]), ylabel=labelled("$y$", fields.units["y"]))
+    return mesh
+
+
+def labelled(symbol, unit):
+    """Return an axis label, the unit in brackets as the house sets it."""
+    return symbol if unit in (None, "-") else f"{symbol}  [{UNITS.get(unit, unit)}]"
+
+
+def draw_streamlines(axes, fields, phase=None, least_fraction=0.02, **options):
+    """Draw lines along the mean velocity; they end where the area fraction is below `least_fraction`.
+
+    Wide kernels reach into what holds no grains; velocities there are those of the grains beside it. `options` go to
+    streamplot: density, color.
+    """
+    empty = ~(fields.map("area_fraction", phase) >= least_fraction)
+    v_x, v_y = (np.ma.masked_where(empty, component) for component in fields.velocity(phase))
+    options = {"color": BLACK, "linewidth": 0.5, "arrowsize": 0.5, "density": 1.2, **options}
+    lines = axes.streamplot(fields.x, fields.y, v_x, v_y, **options)
+    half = (fields.x[1] - fields.x[0]) / 2 if len(fields.x) > 1 else 0.5
+    axes.set(xlim=(fields.x[0] - half, fields.x[-1] + half), ylim=(fields.y[0] - half, fields.y[-1] + half))
+    return lines

@@ -1,0 +1,121 @@
+"""The figure of one Magnus run: forces over travel, distributions by angle, and the fields around the body if measured."""
+
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patches import Circle, Polygon
+
+from . import fields
+from .figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, save
+from .magnus_forces import drag_and_lift
+from .reader import Run, RunError
+
+D = 0.02  # m, mean diameter of the grains
+
+
+def draw(path, frame=-1):
+    """Draw figure.png and figure.pdf of the run folder `path` from its data alone."""
+    run = Run(path)
+    around = fields_of(run)
+    with plt.rc_context(STYLE):
+        width = COLUMN_WIDTH * (2.06 if around else 1)
+        figure = plt.figure(figsize=(width, 6.2), layout="constrained")
+        figure.suptitle(title(run), fontsize=8)
+        parts = np.atleast_1d(figure.subfigures(1, 2 if around else 1))
+        panels = list(parts[0].subplots(4, 1, height_ratios=[1.6, 1, 1, 1]))
+        draw_forces(panels[0], run)
+        draw_angles(panels[1:], run)
+        if around:
+            panels += draw_fields(parts[1], run, around)
+        for letter, panel in zip("abcdefg", panels):
+            panel.set_title(f"({letter})", loc="left")
+        save(figure, path)
+
+
+def title(run):
+    """Return in words what was driven how."""
+    p = run.parameters
+    return (
+        rf"$\Phi$ = {run.summary.get('phi', p['phi']):.3f}, $\Omega$ = {p['spin_ratio']:g}, $V_0$ = {p['v0']:g} m/s,"
+        rf" $\mu$ = {p['mu']:g}, {p['width']:g} $d$ × {p['height']:g} $d$"
+    )
+
+
+def draw_forces(axes, run):
+    """Drag and lift against travel, with their means over the steady state, which is shaded."""
+    travel, forces = run.series["travel"], drag_and_lift(run.series, run.parameters["spin_ratio"])
+    for name, force, colour in zip(("drag", "lift"), forces, (BLUE, VERMILLION)):
+        axes.plot(*coarse(travel, force), color=colour, linewidth=0.5, alpha=0.6)
+        draw_mean(axes, run.summary, name, colour)
+    axes.axvspan(run.summary["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
+    axes.set(xlabel=r"travel  [$d$]", ylabel="force, means over 1 $d$  [N]", xlim=(0, travel[-1]))
+    axes.legend(loc="upper right", framealpha=0.8, edgecolor="none", handlelength=1.4)
+
+
+def coarse(travel, force):
+    """Return (travel, force) as means over about 1 d: single contacts are spikes many times the mean."""
+    step = max(1, int(round(1 / travel[0]))) if len(travel) else 1
+    rows = len(force) // step
+    return tuple(column[: rows * step].reshape(rows, step).mean(axis=1) for column in (travel, force))
+
+
+def draw_mean(axes, summary, name, colour):
+    """Line of a mean over the steady state, named with its standard error."""
+    start = summary["steady_from"]
+    label = f"{name} {summary[name]:.3g} ± {summary[name + '_err']:.1g} N"
+    axes.plot([start, start + summary["steady_travel"]], 2 * [summary[name]], color=colour, linewidth=1.5, label=label)
+
+
+def draw_angles(axes, run):
+    """Normal force, mobilised friction and contacts by angle from the velocity, with standard errors (Fig. 6)."""
+    found, drag, contacts = run.group("angular"), run.summary["drag"], run.summary["contacts"]
+    rows = (("normal", drag, BLUE), ("mobilised", -1, VERMILLION), ("contacts_by_angle", contacts, GREEN))
+    for panel, (name, scale, colour) in zip(axes, rows):
+        error = found[f"{name}_err"] / abs(scale)
+        panel.errorbar(found["theta"] / np.pi, found[name] / scale, error, color=colour, marker="o", markersize=2)
+        panel.set_xlim(-1, 1)
+        panel.axvspan(-0.5, 0.5, color=GREY, alpha=0.2, linewidth=0)
+        panel.axvline(0, color=BLACK, linewidth=0.4)
+    axes[0].set_ylabel(r"$F_{N,\theta}/D$")
+    axes[1].axhline(0, color=BLACK, linewidth=0.4)
+    axes[1].set(ylabel=r"$-F_{T,\theta}/\mu F_{N,\theta}$", ylim=(-1.2, 1.2))
+    axes[2].set(ylabel=r"$N_\theta/N$", xlabel=r"$\theta/\pi$, from the velocity, counter-clockwise")
+
+
+def fields_of(run):
+    """Return the run's fields with lengths in d, velocity over V0, temperature over V0^2(1 + Omega^2); None without."""
+    try:
+        found = fields.read(run, "around")
+    except RunError:
+        return None
+    v0, spin_ratio = run.parameters["v0"], run.parameters["spin_ratio"]
+    arrays = dict(found.arrays, velocity=found.arrays["velocity"] / v0)
+    arrays["temperature"] = found.arrays["temperature"] / (v0**2 * (1 + spin_ratio**2))
+    units = dict(found.units, x="d", y="d", velocity="$V_0$", temperature=r"$V_0^2(1 + \Omega^2)$")
+    return replace(found, x=found.x / D, y=found.y / D, arrays=arrays, units=units)
+
+
+def draw_fields(figure, run, around):
+    """Speed with streamlines, area fraction and granular temperature in the body's frame (Fig. 7); return the panels."""
+    panels = list(figure.subplots(3, 1))
+    warm = np.nanquantile(around.map("temperature"), 0.99)
+    fields.draw_map(panels[0], around, "speed", vmin=0, vmax=1.5)
+    fields.draw_streamlines(panels[0], around)
+    fields.draw_map(panels[1], around, "area_fraction", vmin=0, vmax=max(0.5, 1.2 * run.summary["phi"]))
+    fields.draw_map(panels[2], around, "temperature", vmin=0, vmax=warm)
+    for panel in panels:
+        draw_body(panel, run)
+        panel.set(xlim=(around.x[0], around.x[-1]), ylim=(around.y[0], around.y[-1]))
+    return panels
+
+
+def draw_body(axes, run):
+    """The body about the origin: its outline, or a circle; of a turning body the circle that it sweeps."""
+    body = run.group("intruder")
+    style = dict(facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3)
+    beads, radius = body["beads"] / D, float(np.atleast_1d(body["bead_radius"])[0]) / D
+    if "outline" in body and run.parameters["spin_ratio"] == 0:
+        axes.add_patch(Polygon(body["outline"] / D, **style))
+    else:
+        axes.add_patch(Circle((0, 0), np.hypot(*beads.T).max() + radius, **style))

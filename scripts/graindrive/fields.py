@@ -1,0 +1,44 @@
+"""Stores the fields of a FieldAverager in a run folder, with units, for graindrive.postproc.fields to read."""
+
+from typing import NamedTuple
+
+
+class FieldUnits(NamedTuple):
+    """Names of the units that a study counts in, as the run folder keeps them."""
+
+    length: str
+    velocity: str
+    temperature: str
+    density: str
+    stress: str
+
+
+SI = FieldUnits("m", "m/s", "m^2/s^2", "kg/m^2", "N/m")
+GRAIN = FieldUnits("d", "sqrt(g d)", "g d", "rho", "rho g d")  # rho of the disks, so that a disk of d weighs pi/4
+
+SETTINGS = ("kernel", "spacing", "width", "cutoff", "every", "relative", "phases", "period", "phaseStart")
+
+
+def write_fields(folder, name, averager, units=SI):
+    """Store all fields that `averager` has as the group `fields/NAME` of a RunFolder; its settings become attributes.
+
+    Datasets: x (nx,), y (ny,), samples (phases,), area_fraction, density, temperature and pressure (phases, ny, nx),
+    velocity (phases, ny, nx, 2), contact_stress and kinetic_stress (phases, ny, nx, 2, 2); pressure and stresses only
+    where the averager has them. Velocity and temperature are nan where no grain was.
+    """
+    arrays = dict(
+        x=(averager.x, units.length),
+        y=(averager.y, units.length),
+        samples=(averager.samples, "-"),
+        area_fraction=(averager.areaFraction, "-"),
+        density=(averager.density, units.density),
+        velocity=(averager.velocity, units.velocity),
+        temperature=(averager.temperature, units.temperature),
+    )
+    if averager.stress:
+        arrays.update(
+            pressure=(averager.pressure, units.stress),
+            contact_stress=(averager.contactStress, units.stress),
+            kinetic_stress=(averager.kineticStress, units.stress),
+        )
+    folder.write(f"fields/{name}", arrays, **{key: getattr(averager, key) for key in SETTINGS})

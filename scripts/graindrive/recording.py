@@ -1,0 +1,86 @@
+"""Runs a scene in blocks, samples it after each, and keeps checkpoints from which a run goes on as if never interrupted."""
+
+import numpy as np
+
+from . import progress, scene
+
+CHECKPOINT_SECONDS = 60
+
+
+class Track:
+    """Rows that a study needs again when it goes on: dicts of numbers and arrays, kept in checkpoints."""
+
+    FILE = "track.npz"
+
+    def __init__(self, folder):
+        self.columns = {}
+        if folder.resumed:
+            with np.load(folder.resumed["folder"] / self.FILE) as file:
+                self.columns = {name: list(file[name]) for name in file.files}
+
+    def __len__(self):
+        return len(next(iter(self.columns.values()), ()))
+
+    def append(self, row):
+        """Add a row, a dict of numbers and arrays with the same names every time."""
+        for name, value in row.items():
+            self.columns.setdefault(name, []).append(value)
+
+    def arrays(self):
+        """Return {name: array of shape (rows, …)}."""
+        return {name: np.array(column) for name, column in self.columns.items()}
+
+    def save(self, folder):
+        """Write all rows into a checkpoint's folder."""
+        np.savez(folder / self.FILE, **self.arrays())
+
+
+def run_sampled(folder, steps, block, sample, *, track, stage, grains, label):
+    """Run `steps` steps from the start of the run, calling `sample(done)` after every `block`; return the steps done.
+
+    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. A checkpoint of the scene, the
+    `track` and the facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
+    """
+    first = folder.resumed["step"] if folder.resumed else 0
+    checkpoints = progress.Every(CHECKPOINT_SECONDS)
+
+    def save(place):
+        scene.save(place)
+        track.save(place)
+
+    def after_block(done):
+        ended = sample(first + done)
+        if checkpoints.due():
+            folder.checkpoint(save, first + done, **stage)
+        return ended
+
+    if not folder.resumed:
+        sample(0)
+    timing = progress.run_blocks(steps - first, block, after_block, grains=grains, label=label)
+    folder.note(steps=first + timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    return first + timing.steps
+
+
+def block_means(binner):
+    """Return the means of a ContactForceBinner since it was last cleared, as a dict, and clear it.
+
+    fx, fy [N], torque [N m], contacts, slipping; variances of the instantaneous values within the block, fx_var, fy_var
+    [N^2], contacts_var; by angle, shape (bins,): normal, tangential [N], contacts_by_angle, slipping_by_angle.
+    """
+    force, variance = binner.force, binner.forceVariance
+    row = dict(
+        fx=force[0],
+        fy=force[1],
+        torque=binner.torque[2],
+        contacts=binner.contactNumber,
+        slipping=binner.slippingNumber,
+        fx_var=variance[0],
+        fy_var=variance[1],
+        contacts_var=binner.contactNumberVariance,
+        normal=binner.normalForce,
+        tangential=binner.tangentialForce,
+        contacts_by_angle=binner.contacts,
+        slipping_by_angle=binner.slippingContacts,
+    )
+    binner.clear()
+    return row

@@ -1,0 +1,267 @@
+"""Magnus: a disk that spins and translates through a granular gas or liquid is pushed aside, the other way than in a fluid.
+
+System of Kumar, Dhiman, Reddy, "Magnus effect in granular media", Phys. Rev. E 99, 012902 (2019): two dimensions, no
+gravity, a channel of disks periodic in x between two rough walls. The body moves along x with V0 and turns with
+omega_0 = Omega V0/R for all time. SI units: d = 0.02 m, 20 kg/m^2; lengths on the command line in d.
+
+Readings, each a parameter or named here: diameters are uniform within 10 %; the area fraction is that of the area free to
+grains (between the walls' centre lines, without wall disks and body); walls close in on grains without friction, since
+grains of mu = 0.5 jam before 0.818. Lift is positive along -omega x V, drag along -V.
+
+Drag grows as V0^2 and L/D hardly depends on V0, while the steps needed go as 1/V0: v0=2.5 costs a tenth of the paper's 0.25 m/s.
+
+Cost: the paper's size is 26,000 to 62,000 disks and 1.2e7 steps at 0.25 m/s, a quarter of an hour (phi = 0.352) to two hours
+(0.818) on one core; the demo is 6,700 disks and 2.4e6 steps, a minute or two. A shorter channel means a shorter travel:
+after one length the body meets its own wake, which never refills.
+
+    scripts/run magnus                                  the demo
+    yade -n -x studies/magnus.py phi=0.818 spin_ratio=10 scale=paper out=dense
+    scripts/run magnus help                             all keys
+"""
+
+import os
+import sys
+from typing import Optional
+
+sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
+
+import house  # noqa: E402, F401
+
+import numpy as np  # noqa: E402
+
+from graindrive import bodies, channel, engines, fields, headless, intruder, recording, scene  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
+from graindrive.material import HertzHistoryMaterial  # noqa: E402
+from graindrive.parameters import StudyParameters, quantity  # noqa: E402
+from graindrive.postproc import magnus as results  # noqa: E402
+from graindrive.postproc.magnus_forces import UNITS, steady_state  # noqa: E402
+
+# Parameters -----------------------------------------------------------------------------------------------------------
+
+D = 0.02  # m, mean diameter of the grains
+DENSITY = 20.0  # kg/m^2
+TIME_STEP = 2e-6  # s, the paper's
+SAMPLE_EVERY = 10  # steps; a contact at 5 m/s lasts 60
+BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
+LOOK_EVERY = 50  # blocks between two looks at the error
+CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
+PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
+FIELD_SAMPLES = 1000  # frames that the fields average
+FIELD_REACH = 10  # d around the body, half as much again behind it
+FEWEST_BLOCKS = 200  # in the steady window before its error is believed
+
+
+class MagnusParameters(StudyParameters):
+    """What the Magnus study knows; lengths in d = 0.02 m, all else SI."""
+
+    phi: float = quantity(0.352, "-", "area fraction of the grains", ge=0.05, le=0.9)
+    v0: float = quantity(0.25, "m/s", "speed of the body along x", gt=0, le=20)
+    spin_ratio: float = quantity(5.0, "-", "Omega = omega_0 R/V0, positive counter-clockwise", ge=-1000, le=1000)
+    mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
+    width: float = quantity(300.0, "d", "length of the channel in x, a whole number", gt=0)
+    height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0)
+    travel: Optional[float] = quantity(None, "d", "how far the body goes; auto: the channel's length, the most", gt=0)
+    settle_travel: float = quantity(30.0, "d", "travel that the averages leave out at least", ge=0)
+    until_error: float = quantity(0.0, "-", "standard error of L/D at which the run may end; 0: never", ge=0)
+    intruder_diameter: float = quantity(5.0, "d", "diameter of the disk; longer side of another shape", ge=1)
+    shape: str = quantity("disk", "-", "disk, or another shape as beads: square, tall, wide, triangle, or a file")
+    bead_diameter: float = quantity(0.5, "d", "diameter of the beads of a shape other than the disk", gt=0)
+    polydispersity: float = quantity(0.1, "-", "grains' diameters are uniform within this of d", ge=0, lt=0.9)
+    wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
+    fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing")
+    field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
+    frames: int = quantity(1, "-", "pictures of the channel that are kept, the last at the end", ge=1, le=9999)
+    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+
+    def identity(self):
+        """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
+        outline = {"outline": intruder.contents_of(self.shape)} if intruder.names_a_file(self.shape) else {}
+        return {**super().identity(), **outline}
+
+    @property
+    def way(self):
+        """How far the body goes [d]."""
+        return self.width if self.travel is None else self.travel
+
+    @property
+    def spin(self):
+        """omega_0 [rad/s] = Omega V0/R (Eq. 4)."""
+        return self.spin_ratio * self.v0 / (self.intruder_diameter * D / 2)
+
+
+PRESETS = {
+    "smoke": dict(width=60, height=40, v0=2.5, dt_factor=2),
+    "demo": dict(width=150, height=100, dt_factor=2.5),
+    "paper": {},
+}
+
+# Scene ----------------------------------------------------------------------------------------------------------------
+
+
+def material(mu, damping=1):
+    """The paper's grains, Table I, with friction `mu` and so many times its damping."""
+    return HertzHistoryMaterial(2e9, 2.45e9, damping * 8e6, damping * 8e6, mu, DENSITY)
+
+
+def check_room(p):
+    """The body must fit between the walls, and must not meet its own wake."""
+    if p.way > p.width:
+        raise UsageError(f"travel={p.way:g} d is longer than the channel: the body would meet its wake; raise width={p.width:g}")
+    if p.way <= p.settle_travel:
+        raise UsageError(
+            f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d; raise travel and width"
+        )
+    if abs(1 / p.field_spacing - round(1 / p.field_spacing)) > 1e-9:
+        raise UsageError(f"field_spacing={p.field_spacing:g} d must divide 1 d; take 1/{max(1, round(1 / p.field_spacing))}")
+    if min(p.width, p.height) < 2 * p.intruder_diameter + 4:
+        raise UsageError(
+            f"a channel of {p.width:g} d x {p.height:g} d is too small for a body of {p.intruder_diameter:g} d;"
+            f" both must be at least {2 * p.intruder_diameter + 4:g} d"
+        )
+
+
+def packing(p, body):
+    """Return the channel's grains around the held body, from the cache or by making them."""
+    at = (p.width * D / 2, 0.0)
+    return channel.channel(
+        channel.ChannelRecipe(
+            width=p.width * D,
+            height=p.height * D,
+            d=D,
+            d_min=(1 - p.polydispersity) * D,
+            d_max=(1 + p.polydispersity) * D,
+            phi=p.phi,
+            material=material(0.0, PREPARATION_DAMPING),
+            beads=tuple(map(tuple, body.beads + at)),
+            bead_radius=body.bead_radius,
+            outline=tuple(map(tuple, body.outline + at)),
+            body_area=body.area,
+            closing_speed=CLOSING_SPEED,
+            rest_speed=REST_SPEED,
+            seed=p.seed,
+        )
+    )
+
+
+def add_walls(p):
+    """Add the rough walls and return the ids of their disks, and those of the clumps that a pressure moves."""
+    heights = [side * (p.height - 1) * D / 2 for side in (-1, 1)]
+    if p.wall_pressure == 0:
+        return [id_ for y in heights for id_ in scene.add_base(p.width * D, D, DENSITY, y)], []
+    clumps = [scene.add_wall_clump(p.width * D, D, DENSITY, y, blocked="xzXYZ") for y in heights]
+    return [id_ for clump in clumps for id_ in scene.members(clump)], clumps
+
+
+# Drive, Measure, Run --------------------------------------------------------------------------------------------------
+
+
+def run(p, folder):
+    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
+    check_room(p)
+    dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
+    body = bodies.body_of(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
+    smallest = (1 - p.polydispersity) * D / 2
+    ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
+    if folder.resumed:
+        stage = {name: folder.resumed[name] for name in ("walls", "grains", "body", "phi")}
+        scene.load(folder.resumed["folder"])
+    else:
+        stage = build(p, grains, dt, body)
+    n_grains = stage["grains"][1] - stage["grains"][0]
+    folder.note(dt=dt, dt_over_critical=ratio, n_grains=n_grains)
+    folder.write("intruder", body.as_arrays("m"))
+    print(f"{n_grains} grains, phi = {stage['phi']:.4f}, dt = {dt:.3g} s, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
+    record(p, folder, stage)
+
+
+def build(p, grains, dt, body):
+    """Put walls, grains, body, drive and measure into YADE; return their ids, first and behind the last, and phi."""
+    from yade import O
+
+    packed = packing(p, body)
+    scene.start(p.width * D, p.height * D)
+    walls, clumps = add_walls(p)
+    ids = scene.add_disks(packed["x"], packed["y"], packed["r"], DENSITY)
+    held = bodies.add(body, p.width * D / 2, 0.0, DENSITY)
+    drive = engines.SpinTranslateDrive(body=held, velocity=(p.v0, 0, 0), spin=(0, 0, p.spin), label="drive")
+    binner = engines.ContactForceBinner(body=held, reference="motion", every=SAMPLE_EVERY, label="binner")
+    O.dt = dt
+    measures = [binner, *field_averager(p, held)]
+    scene.run_on(
+        p.loop, grains, gravity=0.0, between=[*measures, drive], precision=p.precision, largest_overlap=p.largest_overlap
+    )
+    for wall, side in zip(clumps, (1, -1)):
+        scene.load_on(wall, (0, side * p.wall_pressure * p.width * D, 0))
+    return dict(walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held, phi=float(packed["phi"]))
+
+
+def field_averager(p, held):
+    """Return, in a list, the engine that averages the fields in the body's frame, or none; it sleeps until the steady state."""
+    from yade import O
+
+    if not p.fields:
+        return []
+    reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
+    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * O.dt) / FIELD_SAMPLES))
+    window = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D)
+    return [
+        engines.FieldAverager(
+            body=held, kernel="diskBin", relative=True, stress=False, every=every, dead=True, label="around", **window
+        )
+    ]
+
+
+def record(p, folder, stage):
+    """Run in blocks of a tenth of d of travel; keep block means of the forces, frames and checkpoints."""
+    from yade import O
+
+    folder.declare_series(**UNITS)
+    state, binner = O.bodies[stage["body"]].state, O.labeledEngine("binner")
+    around = O.labeledEngine("around") if p.fields else None
+    samples = max(1, round(BLOCK_TRAVEL * D / (p.v0 * O.dt) / SAMPLE_EVERY))
+    block, track = samples * SAMPLE_EVERY, recording.Track(folder)
+    steps = int(p.way * D / (p.v0 * O.dt) / block) * block
+    frames_due = list(np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1][folder.frames :])
+    ids = range(*stage["grains"])
+
+    def steady():
+        return steady_state(track.arrays(), p.settle_travel, p.mu, p.spin_ratio)
+
+    def sample(done):
+        if done == 0:
+            return False
+        t = done * O.dt
+        row = dict(t=t, travel=p.v0 * t / D, x=state.pos[0], **recording.block_means(binner))
+        folder.append(**{name: row[name] for name in UNITS})
+        track.append(row)
+        if p.fields:
+            around.dead = row["travel"] < p.settle_travel
+        if frames_due and done >= frames_due[0]:
+            frames_due.pop(0)
+            folder.frame(done * O.dt, *scene.picture(ids, stage["walls"], stage["body"]))
+        looks = p.until_error and len(track) % LOOK_EVERY == 0
+        return looks and steady().is_good_to(p.until_error, FEWEST_BLOCKS)
+
+    recording.run_sampled(
+        folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=f"driving {p.way:g} d"
+    )
+    found = steady()
+    if p.until_error and not found.is_good_to(p.until_error, FEWEST_BLOCKS):
+        print(
+            f"one channel length did not give L/D to {p.until_error:g}: its error is {found.summary['lift_to_drag_err']:.2g};"
+            " average over seeds, or take a longer channel",
+            file=sys.stderr,
+        )
+    if p.fields:
+        fields.write_fields(folder, "around", around)
+    folder.write("angular", found.angular, first_travel=found.start)
+    folder.summarize(phi=stage["phi"], v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, **found.summary)
+
+
+def main(**defaults):
+    """Entry of this study and of presets, which give `defaults`."""
+    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=results.draw)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""Fields from an averager into a run folder and back, and their drawing."""
+
+import math
+
+import disks
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from graindrive import engines
+from graindrive.fields import GRAIN, SI, write_fields
+from graindrive.parameters import StudyParameters
+from graindrive.postproc import fields as results
+from graindrive.postproc.figures import STYLE
+from graindrive.postproc.reader import Run, RunError
+from graindrive.run_folder import RunFolder
+from yade import O
+
+
+@pytest.fixture(scope="module")
+def averaged():
+    """Disks on a circle that turn around the origin: 30 steps, three phases, the last without a sample."""
+    disks.new_scene(dt=1e-3)
+    for angle in 2 * math.pi * np.arange(9) / 9:
+        x, y = 2 * math.cos(angle), 2 * math.sin(angle)
+        disks.disk(x, y, velocity=(-2 * y, 2 * x), spin=2)
+    options = dict(low=(-3, -3, 0), high=(3, 3, 0), spacing=0.2, phases=3, period=0.045)
+    fine = engines.FieldAverager(kernel="diskBin", stress=False, **options)
+    smooth = engines.FieldAverager(kernel="gaussian", **options)
+    disks.loop(before_newton=[fine, smooth])
+    disks.run(30)
+    yield fine, smooth
+    O.reset()
+
+
+@pytest.fixture(scope="module")
+def run(averaged, tmp_path_factory):
+    out = tmp_path_factory.mktemp("fields") / "run"
+    with RunFolder(StudyParameters(out=str(out)), study="magnus") as folder:
+        write_fields(folder, "fine", averaged[0])
+        write_fields(folder, "smooth", averaged[1], GRAIN)
+    return Run(out)
+
+
+def test_everything_comes_back_with_units_and_settings(averaged, run):
+    found, averager = results.read(run, "fine"), averaged[0]
+    np.testing.assert_array_equal(found.x, averager.x)
+    np.testing.assert_array_equal(found.samples, [15, 15, 0])
+    for name, attribute in dict(area_fraction="areaFraction", velocity="velocity", temperature="temperature").items():
+        np.testing.assert_array_equal(found.arrays[name], getattr(averager, attribute))
+    assert found.units["velocity"] == SI.velocity == "m/s" and found.units["temperature"] == "m^2/s^2"
+    assert found.settings["kernel"] == "diskBin" and found.settings["phases"] == 3
+    assert "pressure" not in found.arrays
+    smooth = results.read(run, "smooth")
+    assert smooth.units["pressure"] == "rho g d" and smooth.arrays["contact_stress"].shape == (3, 30, 30, 2, 2)
+
+
+def test_phases_are_averaged_by_their_samples(averaged, run):
+    fields = results.read(run, "fine")
+    fraction = fields.map("area_fraction")
+    np.testing.assert_allclose(fraction, averaged[0].areaFraction[:2].mean(axis=0), rtol=1e-14)
+    assert fraction.sum() * 0.2**2 == pytest.approx(9 * math.pi / 4, rel=1e-12)
+    v_x, v_y = fields.velocity()
+    np.testing.assert_array_equal(np.isnan(v_x), fraction == 0)
+    inside = fraction > 1 - 1e-12
+    # The disks turn with their circle: v = omega x r, but for a thousandth step's chord in place of its arc.
+    expected = -2 * np.broadcast_to(fields.y[:, None], v_x.shape)
+    np.testing.assert_allclose(v_x[inside], expected[inside], atol=0.15)
+    assert np.isnan(fields.map("speed", phase=2)).all() and fields.map("speed", phase=0).shape == (30, 30)
+
+
+def test_names_that_are_not_there(run):
+    with pytest.raises(RunError, match="holds no fields of the name coarse"):
+        results.read(run, "coarse")
+    with pytest.raises(RunError, match="area_fraction, density, speed, temperature; there is no pressure"):
+        results.read(run, "fine").map("pressure")
+
+
+@pytest.mark.parametrize("name", ["fine", "smooth"])
+def test_maps_and_streamlines_show_the_fields(run, name):
+    fields = results.read(run, name)
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots()
+        mesh = results.draw_map(axes, fields, "speed")
+        lines = results.draw_streamlines(axes, fields)
+        figure.canvas.draw()
+    np.testing.assert_array_equal(np.ma.getmaskarray(mesh.get_array()).ravel(), np.isnan(fields.map("speed")).ravel())
+    assert axes.get_xlim() == pytest.approx((-3, 3))
+    segments = np.array(lines.lines.get_segments())
+    # The disks' own circle of 2: no line crosses it by much, and inside it the disks leave a hole of radius 1.5.
+    radius = np.hypot(*segments.reshape(-1, 2).T)
+    assert len(segments) > 50 and radius.max() < 3.5
+    assert name == "smooth" or radius.min() > 1.2
+    middle, along = segments.mean(axis=1), segments[:, 1] - segments[:, 0]
+    turning = middle[:, 0] * along[:, 1] - middle[:, 1] * along[:, 0]
+    assert (turning > 0).mean() > 0.95  # counter-clockwise, as the disks
+    assert axes.get_xlabel() == {"fine": "$x$  [m]", "smooth": "$x$  [$d$]"}[name]
+    plt.close(figure)
