@@ -32,8 +32,8 @@ def expected_core_seconds(parameters):
     """
     phi, area = parameters["phi"], parameters["width"] * parameters["height"]
     grains = phi * area / (np.pi / 4)
-    time = (parameters["travel"] + parameters.get("settle_travel", 0.0)) * DIAMETER / parameters["v0"]
-    steps = time / (TIME_STEP * parameters["dt_factor"])
+    travel = parameters["width"] if parameters["travel"] is None else parameters["travel"]
+    steps = travel * DIAMETER / parameters["v0"] / (TIME_STEP * parameters["dt_factor"])
     return float(grains * steps / np.interp(phi, *RATES))
 
 
@@ -73,7 +73,7 @@ FIGURES = (
         " counter-clockwise for ω > 0 and F_T > 0 opposes the spin. Paper: contacts in front only, all of them slipping at"
         " large Ω.",
         angle_claims,
-        magnus_plots.by_angle,
+        magnus_plots.forces_by_angle,
     ),
     PlannedFigure(
         "fig7",

@@ -5,8 +5,9 @@ Where the paper says "roughly", "almost" or "weakly" a tolerance is our reading 
 
 import numpy as np
 
-from .magnus_runs import at, curve, distributions, names, over_repeats, quantity
-from .measured import UNKNOWN, Measured, exactly, polynomial_through, power_of, steepest_place
+from .magnus_model import saturated_lift_to_drag
+from .magnus_runs import at, by_angle, curve, names, over_repeats, quantity
+from .measured import UNKNOWN, Measured, exactly, mean_of, polynomial_through, power_of, steepest_place
 from .verdicts import Agrees, Claim, above, below
 
 DILUTE, DENSE = 0.5, 0.8  # area fractions below and above which the paper speaks of dilute and dense systems
@@ -148,41 +149,41 @@ def angle_claims(campaign, rows):
     """Contacts in front only; all slipping at large Ω, against the spin from Ω = 1 on."""
     fastest = rows["spin_ratio"].max()
     fast, unit = at(rows, spin_ratio=fastest), at(rows, spin_ratio=1)
-    in_front, slipping = front_share(campaign, rows), slip(campaign, fast)
+    front = [quantity(group, "front_share") for _, group in rows.groupby("spin_ratio")]
+    least, slipping = min(front, key=lambda share: share.value), mean_of([slip(*one) for one in pairs(campaign, fast)])
     text, slip_text = (
         "contacts are almost only in |θ| < π/2; least share of N",
         f"contacts slip at Ω {fastest:g}; ΣF_T/(μ ΣF_N)",
     )
     claims = [
-        claim(rows, text, "Fig. 6(c)", "≈ 1", in_front, above(0.95)),
+        claim(rows, text, "Fig. 6(c)", "≈ 1", least, above(0.95)),
         claim(fast, slip_text, "Fig. 6(b)", "1", slipping, Agrees(1, 0.05, 0.1)),
     ]
     if len(unit):
+        share = over_repeats([against_spin(found) for found, _ in pairs(campaign, unit)])
         text = "most of the front is pushed against the spin at Ω 1; share of ΣF_N in |θ| < π/2 where F_T > 0"
-        claims.append(claim(unit, text, "Figs. 4, 6(b)", "> 0.5", against_spin(campaign, unit), above(0.5)))
+        claims.append(claim(unit, text, "Figs. 4, 6(b)", "> 0.5", share, above(0.5)))
     return claims
 
 
-def front_share(campaign, rows):
-    """Return the smallest share, over the spin ratios, of contacts with |θ| < π/2."""
-    shares = []
-    for _, group in rows.groupby("spin_ratio"):
-        theta, _, _, contacts = distributions(campaign, group)
-        shares.append(over_repeats(contacts[:, np.abs(theta) < np.pi / 2].sum(axis=1) / contacts.sum(axis=1)))
-    return min(shares, key=lambda share: share.value)
+def pairs(campaign, rows):
+    """Return (distributions by angle, μ) of each run."""
+    return list(zip(by_angle(campaign, rows), rows["mu"]))
 
 
-def slip(campaign, rows):
-    """Return ΣF_T over μ ΣF_N of all bins: 1 if every contact slips against the spin."""
-    _, normal, tangential, _ = distributions(campaign, rows)
-    return over_repeats(tangential.sum(axis=1) / (rows["mu"].to_numpy() * normal.sum(axis=1)))
+def slip(found, mu):
+    """Return ΣF_T over μ ΣF_N of all bins, 1 if every contact slips against the spin; errors of the bins in squares."""
+    tangential, normal = (
+        Measured(float(force.sum()), float(np.hypot.reduce(error)))
+        for force, error in ((found.tangential, found.tangential_err), (found.normal, found.normal_err))
+    )
+    return tangential / normal / exactly(mu)
 
 
-def against_spin(campaign, rows):
+def against_spin(found):
     """Return the share of the front's normal force in bins whose tangential force opposes the spin."""
-    theta, normal, tangential, _ = distributions(campaign, rows)
-    front = np.abs(theta) < np.pi / 2
-    return over_repeats(np.sum(normal * (tangential > 0) * front, axis=1) / np.sum(normal * front, axis=1))
+    pressing = found.normal * found.front
+    return np.sum(pressing * (found.tangential > 0)) / np.sum(pressing)
 
 
 # ---- Fig. 8: friction ------------------------------------------------------------------------------------------------
@@ -215,16 +216,11 @@ def usual_friction(phi, rows):
         rounding = (mu + 1 / mu) * KAPPA_ROUNDING
         text, rule = f"Φ {phi:g}: κ as printed", Agrees(printed, KAPPA_ROUNDING, 0.02)
         claims.append(claim(rows, text, "section IV", f"{printed:g}", kappa, rule))
-        ratio = lift_ratio(printed, mu)
+        ratio = saturated_lift_to_drag(printed, mu)
         text, rule = f"Φ {phi:g}: L∞/D∞ by Eq. 15 with the printed κ", Agrees(ratio, rounding, 0.05)
         claims.append(claim(rows, text, "Eq. 15, section IV", f"{ratio:g}", lift, rule))
     if phi > DENSE:
         claims.append(claim(rows, f"Φ {phi:g}: L∞/D∞ < μ", "Eq. 16", "< 0.5", lift, below(mu)))
-    model = Measured(lift_ratio(kappa.value, mu), (mu + 1 / mu) * kappa.error)
+    model = Measured(float(saturated_lift_to_drag(kappa.value, mu)), (mu + 1 / mu) * kappa.error)
     text = f"Φ {phi:g}: Eq. 15 with the measured κ gives L∞/D∞; the difference"
     return claims + [claim(rows, text, "Eq. 15", "0", lift - model, Agrees(0, 0.02, 0.05))]
-
-
-def lift_ratio(kappa, mu):
-    """L∞/D∞ = κμ − (1 − κ)/μ [-], Eq. 15, for κ = Σ F_N cos θ / D∞ and a coefficient of friction above 0."""
-    return kappa * mu - (1 - kappa) / mu

@@ -2,10 +2,12 @@
 
 import numpy as np
 
-from . import figures
+from . import fields, figures
 from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, plt
-from .magnus_claims import by_phi, lift_ratio, over_no_spin
-from .magnus_runs import at, curve, distributions, fields, quantity
+from .magnus_claims import by_phi, over_no_spin
+from .magnus_model import saturated_lift_to_drag
+from .magnus_runs import at, by_angle, curve, fields_over_repeats, quantity
+from .magnus_wake import INTRUDER_RADIUS
 from .verdicts import Verdict
 
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, BLACK)
@@ -112,13 +114,14 @@ def drag_against_spin(campaign, rows, claims):
     return figure
 
 
-def by_angle(campaign, rows, claims):
+def forces_by_angle(campaign, rows, claims):
     """Fig. 6: F_N/D_0, F_T/(μ F_N) and N_θ/N by angle."""
     figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
     still = quantity(at(rows, spin_ratio=0), "drag").value
     for k, (spin, group) in enumerate(rows.groupby("spin_ratio", sort=True)):
-        theta, *repeats = distributions(campaign, group)
-        normal, tangential, contacts = (values.mean(axis=0) for values in repeats)
+        found = by_angle(campaign, group)
+        theta, names = found[0].theta, ("normal", "tangential", "contacts")
+        normal, tangential, contacts = (np.mean([getattr(one, name) for one in found], axis=0) for name in names)
         look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], markersize=2.5, linewidth=0.7, label=f"Ω = {spin:g}")
         left.plot(theta / np.pi, normal / still, **look)
         busy = normal > 1e-3 * normal.max()
@@ -134,43 +137,23 @@ def by_angle(campaign, rows, claims):
 
 
 def around_intruder(campaign, rows, claims):
-    """Fig. 7: speed with streamlines, area fraction and granular temperature around the intruder."""
+    """Fig. 7: speed with streamlines, area fraction and granular temperature around the body."""
     spins = sorted(rows["spin_ratio"].unique())
     figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=5.4)
     for column, spin in zip(axes.T, spins):
         group = at(rows, spin_ratio=spin)
-        v0, phi = float(group["v0"].iloc[0]), float(group["phi"].iloc[0])
-        x, y, field = fields(campaign, group)
-        empty = field["phi"] < 0.02 * phi
-        speed = np.ma.masked_where(empty, np.hypot(field["vx"], field["vy"]) / v0)
-        heat = np.ma.masked_where(empty, field["temperature"] / (v0**2 * (1 + spin**2)))
-        images = [
-            column[0].pcolormesh(x, y, speed, cmap="viridis", vmin=0, vmax=1.5, rasterized=True),
-            column[1].pcolormesh(x, y, field["phi"], cmap="Greys", vmin=0, vmax=1, rasterized=True),
-            column[2].pcolormesh(x, y, heat, cmap="inferno", vmin=0, vmax=max_of(heat), rasterized=True),
-        ]
-        draw_streamlines(column[0], x, y, field, empty)
+        found = fields_over_repeats(campaign, group)
+        warm = float(np.nanquantile(found.map("temperature"), 0.99))
+        fields.draw_map(column[0], found, "speed", vmin=0, vmax=1.5)
+        fields.draw_streamlines(column[0], found, density=0.7)
+        fields.draw_map(column[1], found, "area_fraction", vmin=0, vmax=max(0.5, 1.2 * float(group["phi"].iloc[0])))
+        fields.draw_map(column[2], found, "temperature", vmin=0, vmax=warm)
         column[0].set_title(f"Ω = {spin:g}")
-        for panel, image in zip(column, images):
-            panel.add_patch(plt.Circle((0, 0), 2.5, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
-            panel.set(aspect="equal", xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-            figure.colorbar(image, ax=panel, shrink=0.8)
-    for panel, label in zip(axes[:, 0], ("|v − V|/V0", "area fraction", "T/(V0²(1 + Ω²))")):
-        panel.set_ylabel(f"{label}\ny/d")
-    for panel in axes[-1]:
-        panel.set_xlabel("x/d")
+        for panel in column:
+            panel.add_patch(
+                plt.Circle((0, 0), INTRUDER_RADIUS, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3)
+            )
     return figure
-
-
-def max_of(heat):
-    """Return the upper end of a colour scale that a few hot bins do not spoil."""
-    return float(np.quantile(heat.compressed(), 0.995)) if heat.count() else 1.0
-
-
-def draw_streamlines(axes, x, y, field, empty):
-    """Draw lines along the mean velocity relative to the intruder, where there are grains."""
-    vx, vy = (np.ma.masked_where(empty, np.nan_to_num(field[name])) for name in ("vx", "vy"))
-    axes.streamplot(x, y, vx, vy, density=0.7, color="white", linewidth=0.4, arrowsize=0.4)
 
 
 def lift_against_friction(campaign, rows, claims):
@@ -183,7 +166,7 @@ def lift_against_friction(campaign, rows, claims):
         look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="", label=f"Φ = {phi:g}")
         draw_points(axes, *curve(group, "mu", "lift_to_drag"), **look)
         mu, kappa = curve(group[group["mu"] > 0], "mu", "kappa")
-        model = [lift_ratio(found.value, m) for m, found in zip(mu, kappa)]
+        model = [saturated_lift_to_drag(found.value, m) for m, found in zip(mu, kappa)]
         axes.plot(mu, model, color=COLOURS[k % 6], linewidth=0.8)
     axes.set(xlabel="friction coefficient μ", ylabel="L$_∞$/D$_∞$")
     axes.legend()

@@ -5,7 +5,9 @@ All in the intruder's frame, V along +x and omega > 0, lengths in d, y positive 
 """
 
 import numpy as np
+from scipy.ndimage import uniform_filter
 
+from .magnus import fields_of
 from .magnus_runs import at, names, over_repeats
 from .measured import UNKNOWN
 from .verdicts import Claim, above, below
@@ -37,55 +39,50 @@ def wake_claims(campaign, rows):
 
 
 def over_runs(campaign, rows, number):
-    """Return the mean of `number(phi of the packing, fields)` over runs, as `Measured`; unknown without runs."""
-    if not len(rows):
-        return UNKNOWN
-    values = [number(phi, campaign.run(name).group("fields")) for name, phi in zip(rows["run"], rows["phi"])]
-    return over_repeats(values) if np.all(np.isfinite(values)) else UNKNOWN
+    """Return the mean of `number(phi of the packing, Fields)` over runs, as `Measured`; unknown without runs."""
+    values = [number(phi, fields_of(campaign.run(name))) for name, phi in zip(rows["run"], rows["phi"])]
+    return over_repeats(values) if values and np.all(np.isfinite(values)) else UNKNOWN
 
 
-def core_fraction(phi, field):
-    """Return the area fraction within half a grain's distance of the line behind the intruder, over the packing's."""
-    behind = (field["x"] < -INTRUDER_RADIUS - 0.2) & (field["x"] > -2 * INTRUDER_RADIUS)
-    middle = np.abs(field["y"]) < 0.5
-    return float(np.mean(field["phi"][np.ix_(middle, behind)]) / phi)
+def core_fraction(phi, found):
+    """Return the area fraction within 0.5 d of the axis, from the body to one radius behind it, over the packing's."""
+    behind = (found.x < -INTRUDER_RADIUS - 0.2) & (found.x > -2 * INTRUDER_RADIUS)
+    middle = np.abs(found.y) < 0.5
+    return float(np.mean(found.map("area_fraction")[np.ix_(middle, behind)]) / phi)
 
 
-def wake_width(phi, field):
+def wake_width(phi, found):
     """Return the mean width [d], over the columns of `depletion`, of the area that the wake lacks."""
-    y, depth = depletion(phi, field)
+    y, depth = depletion(phi, found)
     return float(np.mean(depth.sum(axis=0)) * (y[1] - y[0]))
 
 
-def wake_centre(phi, field):
-    """Return the mean y [d] of the area that the wake lacks."""
-    y, depth = depletion(phi, field)
+def wake_centre(phi, found):
+    """Return the mean y [d] of the area that the wake lacks; nan if it lacks none."""
+    y, depth = depletion(phi, found)
     return float(np.sum(y[:, None] * depth) / np.sum(depth)) if depth.sum() > 0 else float("nan")
 
 
-def depletion(phi, field):
-    """Return y and 1 − φ/Φ, not below 0, within four radii of the axis, from one to two radii behind the intruder."""
-    behind = (field["x"] < -2 * INTRUDER_RADIUS) & (field["x"] > -3 * INTRUDER_RADIUS)
-    near = np.abs(field["y"]) < 4 * INTRUDER_RADIUS
-    return field["y"][near], np.clip(1 - field["phi"][np.ix_(near, behind)] / phi, 0, None)
+def depletion(phi, found):
+    """Return y (n,) and 1 - local over mean area fraction, not below 0, (n, m): within four radii of the axis, from one to
+    two radii behind the body.
+    """
+    behind = (found.x < -2 * INTRUDER_RADIUS) & (found.x > -3 * INTRUDER_RADIUS)
+    near = np.abs(found.y) < 4 * INTRUDER_RADIUS
+    return found.y[near], np.clip(1 - found.map("area_fraction")[np.ix_(near, behind)] / phi, 0, None)
 
 
-def hottest_side(phi, field):
-    """Return sin θ of the hottest bin that is at least a tenth full, within two radii; bins averaged over 0.5 d."""
-    x, y = np.meshgrid(field["x"], field["y"])
-    weight = np.where(np.isfinite(field["temperature"]), field["phi"], 0.0)
-    heat = smoothed(np.nan_to_num(field["temperature"]) * weight, field["x"])
-    weight = smoothed(weight, field["x"])
+def hottest_side(phi, found):
+    """Return sin(theta) of the hottest place within two radii, of averages over 0.5 d that are a tenth full or more."""
+    x, y = np.meshgrid(found.x, found.y)
+    temperature = found.map("temperature")
+    weight = np.where(np.isfinite(temperature), found.map("area_fraction"), 0.0)
+    size = max(1, round(0.5 / (found.x[1] - found.x[0])))
+    heat = uniform_filter(np.nan_to_num(temperature) * weight, size, mode="nearest")
+    weight = uniform_filter(weight, size, mode="nearest")
     distance = np.hypot(x, y)
     counted = (weight > 0.1 * phi) & (distance > INTRUDER_RADIUS) & (distance < 2 * INTRUDER_RADIUS)
     if not counted.any():
         return float("nan")
     place = np.argmax(np.where(counted, heat / np.maximum(weight, 1e-300), -np.inf))
     return float(y.flat[place] / distance.flat[place])
-
-
-def smoothed(values, x):
-    """Return a field averaged over squares of 0.5 d."""
-    from scipy.ndimage import uniform_filter
-
-    return uniform_filter(values, size=max(1, round(0.5 / (x[1] - x[0]))), mode="nearest")

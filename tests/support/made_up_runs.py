@@ -29,31 +29,36 @@ class MadeUpMagnus:
         contacts = keys["phi"] * keys["v0"] * (1 - 0.3 * spin / 20) * (1 - 0.2 * keys["v0"] * (keys["phi"] > 0.8))
         exact = dict(drag=drag, contacts=contacts, kappa=kappa, lift_to_drag=saturated * spin**4 / (1 + spin**4))
         errors = {name: self.error * (abs(value) if name != "lift_to_drag" else 0.2) for name, value in exact.items()}
-        errors["kappa"] = 0.002
+        exact["front_share"], errors["kappa"], errors["front_share"] = 0.99, 0.002, 0.001
         noisy = {name: value + errors[name] * noise() for name, value in exact.items()}
         return {**noisy, **{f"{name}_err": error for name, error in errors.items()}}
 
 
 def angles(keys, noise):
-    """Return distributions by angle: everything in front, slipping by tanh Ω."""
+    """Return distributions by angle: everything in front, slipping by tanh; tangential forces counter-clockwise."""
     normal = np.where(np.abs(THETA) < np.pi / 2, np.cos(THETA), 1e-4) * (1 + 0.01 * noise())
-    tangential = np.tanh(2 * (keys["spin_ratio"] - np.sin(THETA))) * keys["mu"] * normal
-    return dict(theta=THETA, normal=normal, tangential=tangential, contacts=normal / normal.sum())
+    against_spin = np.tanh(2 * (keys["spin_ratio"] - np.sin(THETA))) * keys["mu"] * normal
+    arrays = dict(normal=normal, tangential=-against_spin, contacts_by_angle=normal / normal.sum())
+    return dict(theta=THETA, **arrays, **{f"{name}_err": 0.01 * np.abs(array) for name, array in arrays.items()})
 
 
 def fields(keys, noise):
-    """Return fields with a wake that bends and widens, hottest on the side that the paper names."""
+    """Return fields with a wake that bends and widens, hottest on the side that the paper names; SI units, one phase."""
     x = np.arange(-12, 12, 0.25) + 0.125
     X, Y = np.meshgrid(x, x)
     spin = keys["spin_ratio"]
     side = {0.0: 0.0, 1.0: -1.0, 10.0: 1.0}[spin]
     bend = 0.15 * spin / 10 * np.clip(-X, 0, None) + 0.02 * noise()
     wake = (X < 0) & (np.abs(Y - bend) < 2.6 + 0.5 * spin / 10)
-    inside = np.hypot(X, Y) < 2.5
-    phi = np.where(wake | inside, 0.0, keys["phi"])
+    empty = wake | (np.hypot(X, Y) < 2.5)
     heat = np.exp(-((X - 2) ** 2) / 4 - (Y - 2.5 * side + 0.05 * noise()) ** 2 / 2)
     shield = np.exp(-np.hypot(X, Y) / 4)
-    return dict(x=x, y=x, phi=phi, vx=-keys["v0"] * (1 - shield), vy=0.2 * Y * shield, temperature=heat)
+    velocity = keys["v0"] * np.stack([shield - 1, 0.2 * Y * shield], axis=-1)
+    velocity[empty], heat[empty] = np.nan, np.nan
+    arrays = dict(area_fraction=np.where(empty, 0.0, keys["phi"]), velocity=velocity, temperature=heat)
+    return dict(
+        x=0.02 * x, y=0.02 * x, samples=np.array([1000]), **{name: array[None] for name, array in arrays.items()}
+    )
 
 
 def write_run(folder, name, keys, summary, groups, study="magnus"):
@@ -82,7 +87,10 @@ def make_campaign(folder, laws, sweeps, *, seed=1):
             keys = {**KEYS, **dict(zip(grid, values))}
             name = "-".join(f"{key}_{value:g}" for key, value in keys.items())
             if name not in runs:
-                groups = {"angles": angles(keys, noise), **({"fields": fields(keys, noise)} if keys["fields"] else {})}
+                groups = {
+                    "angular": angles(keys, noise),
+                    **({"fields/around": fields(keys, noise)} if keys["fields"] else {}),
+                }
                 write_run(folder, name, keys, laws.summary(keys, noise), groups)
                 runs[name] = dict(name=name, sweeps=[])
             runs[name]["sweeps"].append(sweep)
