@@ -1,9 +1,11 @@
 """Manners of a study run as a command: no open port in batch mode, clear endings, true exit codes, no litter."""
 
 import atexit
+import builtins
+import contextlib
 import gc
+import io
 import os
-import runpy
 import shutil
 import signal
 import socketserver
@@ -42,7 +44,10 @@ def declaration_of(path):
     arguments, search_path, _declared = sys.argv, list(sys.path), []
     try:
         sys.argv = [str(path)]
-        runpy.run_path(str(path), run_name="__main__")
+        # By exec, as YADE's program does: YADE runs code of its own in whatever module is `__main__`.
+        space = {"__name__": "__main__", "__file__": str(path), "__builtins__": builtins}
+        with contextlib.redirect_stdout(io.StringIO()):  # YADE's greeting
+            exec(compile(Path(path).read_bytes(), str(path), "exec"), space)
         if not _declared:
             raise RuntimeError(f"{path} does not call headless.main, so it is not a study")
         return _declared[0]
