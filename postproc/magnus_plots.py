@@ -58,10 +58,10 @@ def against_speed(campaign, rows, claims):
     return figure
 
 
-def spin_axis(axes):
-    """Draw the spin ratio on an axis that is linear up to 1 and logarithmic beyond."""
+def spin_axis(axes, largest):
+    """Draw the spin ratio, up to `largest`, on an axis that is linear up to 1 and logarithmic beyond."""
     axes.set_xscale("symlog", linthresh=1, linscale=0.7)
-    axes.set_xlim(0, 1.15 * axes.dataLim.x1)
+    axes.set_xlim(0, 1.15 * max(largest, 1.0))
     plain_ticks(axes, [0, 0.5, 1, 2, 5, 10, 20])
     axes.set_xlabel("spin ratio Ω")
 
@@ -81,7 +81,7 @@ def lift_against_spin(campaign, rows, claims):
         draw_curves(panel, group, "v0", "spin_ratio", "lift_to_drag", "V0 = {:g} m/s")
         panel.axhline(0, color=GREY, linewidth=0.6)
         panel.set_title(f"Φ = {phi:g}")
-        spin_axis(panel)
+        spin_axis(panel, rows["spin_ratio"].max())
     share_y(axes[0])
     axes[0, 0].set_ylabel("L/D")
     axes[0, 0].legend()
@@ -106,7 +106,7 @@ def drag_against_spin(campaign, rows, claims):
                 points = [over_no_spin(one_speed, name, spin) for spin in spins]
                 draw_points(panel, spins, points, color=COLOURS[k % 6], marker=MARKERS[k % 6], label=f"V0 = {v0:g} m/s")
             panel.axhline(1, color=GREY, linewidth=0.6)
-            spin_axis(panel)
+            spin_axis(panel, rows["spin_ratio"].max())
         column[0].set_title(f"Φ = {phi:g}")
     axes[0, 0].set_ylabel("D$_Ω$/D$_0$")
     axes[1, 0].set_ylabel("N$_Ω$/N$_0$")
