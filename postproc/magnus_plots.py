@@ -139,14 +139,14 @@ def forces_by_angle(campaign, rows, claims):
 def around_intruder(campaign, rows, claims):
     """Fig. 7: speed with streamlines, area fraction and granular temperature around the body."""
     spins = sorted(rows["spin_ratio"].unique())
-    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=5.4)
+    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=4.4)
     for column, spin in zip(axes.T, spins):
         group = at(rows, spin_ratio=spin)
         found = fields_over_repeats(campaign, group)
         warm = float(np.nanquantile(found.map("temperature"), 0.99))
         fields.draw_map(column[0], found, "speed", vmin=0, vmax=1.5)
         fields.draw_streamlines(column[0], found, density=0.7)
-        fields.draw_map(column[1], found, "area_fraction", vmin=0, vmax=max(0.5, 1.2 * float(group["phi"].iloc[0])))
+        fields.draw_map(column[1], found, "area_fraction", vmin=0, vmax=0.9)  # grains pile up before it
         fields.draw_map(column[2], found, "temperature", vmin=0, vmax=warm)
         column[0].set_title(f"Ω = {spin:g}")
         for panel in column:
