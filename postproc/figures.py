@@ -33,8 +33,13 @@ STYLE = {
 
 def save(figure, folder):
     """Write `figure.png` and `figure.pdf` into `folder`, each in one step, and close the figure."""
+    save_as(figure, folder, "figure")
+
+
+def save_as(figure, folder, name):
+    """Write NAME.png and NAME.pdf into `folder`, each in one step, and close the figure."""
     for ending in ("png", "pdf"):
-        target = Path(folder) / f"figure.{ending}"
+        target = Path(folder) / f"{name}.{ending}"
         temporary = target.with_name(f".{target.name}")
         figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
         os.replace(temporary, target)

@@ -1,5 +1,7 @@
 """A cache of costly arrays (settled packings) on disk, keyed by the parameters and the recipe that made them."""
 
+import contextlib
+import fcntl
 import hashlib
 import os
 import sys
@@ -23,16 +25,66 @@ def cached(kind, parameters, recipe, build):
     """Return the dict of arrays that `build()` makes, from the cache if they are there already.
 
     `kind` names the entry ("bed"), `parameters` is the dict of plain values that decides it, `recipe` the version of
-    the code that builds it: raise it when the result changes. A damaged entry is built anew. Builders at the same time
-    are safe: each writes its own file and renames it, the last one wins with the same content. Where the cache cannot
-    be written the arrays are returned all the same, with a note.
+    the code that builds it: raise it when the result changes. A damaged entry is built anew. Of processes that want
+    the same entry at once the first builds it and the others wait for it; should the first fail, the next one builds.
+    Where the cache cannot be written or locked the arrays are returned all the same, with a note if not written.
     """
     path = cache_folder() / f"{kind}-{digest({'parameters': parameters, 'recipe': recipe})}.npz"
+    damaged_before = path.exists()
     arrays = load(path)
-    if arrays is None:
-        arrays = {name: np.asarray(array) for name, array in build().items()}
-        store(path, arrays)
+    if arrays is not None:
+        return arrays
+    with one_at_a_time(path) as waited:
+        arrays = load(path) if waited or not damaged_before else None  # someone may have stored it meanwhile
+        if arrays is None:
+            arrays = {name: np.asarray(array) for name, array in build().items()}
+            store(path, arrays)
     return arrays
+
+
+@contextlib.contextmanager
+def one_at_a_time(path):
+    """Hold the lock of the entry at `path` among all processes that share the cache; tells whether it was awaited.
+
+    The lock is a file that its holder removes. It goes with the process, so a killed builder blocks nobody. Where
+    nothing can be locked (a read-only folder, some network file systems) everyone builds, and stores the same.
+    """
+    try:
+        lock, waited = take_lock(path.with_name(f".{path.stem}.lock"), path.stem)
+    except OSError:
+        yield True
+        return
+    with lock:
+        try:
+            yield waited
+        finally:
+            remove(lock.name)
+
+
+def take_lock(path, entry):
+    """Return the locked, open file `path`, and whether another process held it before."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    waited = False
+    while True:
+        file = open(path, "w")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print(f"graindrive: {entry} is being made by another run; waiting for it", file=sys.stderr)
+            waited = True
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if is_at(file, path):
+            return file, waited
+        file.close()  # its holder removed it meanwhile: the lock is a new file now
+        waited = True
+
+
+def is_at(file, path):
+    """True if the open `file` is still the one that `path` names."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), os.stat(path))
+    except FileNotFoundError:
+        return False
 
 
 def load(path):

@@ -1,7 +1,10 @@
 """Manners of a study run as a command: no open port in batch mode, clear endings, true exit codes, no litter."""
 
 import atexit
+import builtins
+import contextlib
 import gc
+import io
 import os
 import shutil
 import signal
@@ -9,6 +12,7 @@ import socketserver
 import sys
 import threading
 import traceback
+from dataclasses import dataclass
 from pathlib import Path
 
 from . import run_data, signals
@@ -21,6 +25,36 @@ from .run_remains import AlreadyComplete
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 
+@dataclass(frozen=True)
+class Declaration:
+    """What a study hands to `main`: its name, its class of parameters, its presets by scale, a preset study's values."""
+
+    name: str
+    parameters: type
+    presets: dict
+    defaults: dict
+
+
+_declared = None  # where `declaration_of` waits for a declaration; None: `main` runs the study
+
+
+def declaration_of(path):
+    """Return the `Declaration` of the study in file `path`, without running it; RuntimeError if it makes none."""
+    global _declared
+    arguments, search_path, _declared = sys.argv, list(sys.path), []
+    try:
+        sys.argv = [str(path)]
+        # By exec, as YADE's program does: YADE runs code of its own in whatever module is `__main__`.
+        space = {"__name__": "__main__", "__file__": str(path), "__builtins__": builtins}
+        with contextlib.redirect_stdout(io.StringIO()):  # YADE's greeting
+            exec(compile(Path(path).read_bytes(), str(path), "exec"), space)
+        if not _declared:
+            raise RuntimeError(f"{path} does not call headless.main, so it is not a study")
+        return _declared[0]
+    finally:
+        sys.argv, sys.path[:], _declared = arguments, search_path, None
+
+
 def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
     """Run a study as a command and end the program as a command should.
 
@@ -30,6 +64,9 @@ def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
     128 + n after signal n, 1 after any other failure. In a terminal a good run returns to YADE's console.
     """
     name = name or Path(sys.argv[0]).stem
+    if _declared is not None:
+        _declared.append(Declaration(name, parameters, presets, dict(defaults or {})))
+        return
     leave_nothing_behind()
     p = parameters.from_command_line(sys.argv[1:], presets, study=name, defaults=defaults)
     batch = is_batch()

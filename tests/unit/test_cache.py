@@ -75,14 +75,44 @@ def test_an_unwritable_cache_costs_a_note_not_the_run(tmp_path, monkeypatch, cap
 def test_a_build_that_fails_leaves_nothing(folder):
     with pytest.raises(ZeroDivisionError):
         cache.cached("bed", {}, 1, lambda: 1 / 0)
-    assert not folder.exists()
+    assert list(folder.iterdir()) == []
 
 
-def test_builders_at_the_same_time_agree(folder):
-    code = "import numpy, graindrive.cache as c; print(c.cached('bed', {}, 1, lambda: {'x': numpy.ones(10**6)})['x'].sum())"
-    processes = [subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) for _ in range(4)]
-    assert [p.communicate()[0].strip() for p in processes] == ["1000000.0"] * 4
-    assert len(list(folder.iterdir())) == 1
+BUILD = """
+import sys, numpy, graindrive.cache as c
+def build():
+    print("building", flush=True)
+    sys.stdin.read()
+    return {"x": numpy.ones(10**6)}
+print(c.cached("bed", {}, 1, build)["x"].sum(), flush=True)
+"""
+
+
+def builder():
+    """Start a process that wants the entry, and if it has to make it says so and waits for the end of its input."""
+    pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen([sys.executable, "-c", BUILD], **pipes)
+
+
+def test_of_builders_at_the_same_time_one_builds_and_the_others_wait(folder):
+    processes = [builder() for _ in range(4)]
+    for process in processes:
+        process.stdin.close()
+        process.stdin = None  # for communicate
+    words = [process.communicate()[0].split() for process in processes]
+    assert [w[-1] for w in words] == ["1000000.0"] * 4
+    assert sum("building" in w for w in words) == 1
+    assert [p.suffix for p in folder.iterdir()] == [".npz"]
+
+
+def test_a_builder_that_is_killed_blocks_nobody(folder):
+    first = builder()
+    assert first.stdout.readline() == "building\n"
+    second = builder()
+    assert "is being made by another run; waiting for it" in second.stderr.readline()
+    first.kill()
+    assert second.communicate("")[0].split() == ["building", "1000000.0"]
+    first.communicate()
 
 
 def test_the_folder_follows_the_environment(monkeypatch, tmp_path):

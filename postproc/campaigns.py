@@ -1,0 +1,90 @@
+"""A campaign's folder: its runs as one table, and the report that its study's figures and verdicts make of them."""
+
+import importlib
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import pandas as pd
+
+from . import results
+from .reader import Run, RunError
+
+FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
+NOT_IN_TABLE = ("out", "resume", "redo", "vtk")  # keys of a study that say nothing of its result
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """A campaign's `folder` and its `plan` (the content of campaign.json); raises RunError if the folder has none."""
+
+    folder: Path
+    plan: dict
+
+    @classmethod
+    def of(cls, folder):
+        """Open the campaign in `folder`."""
+        try:
+            return cls(Path(folder), json.loads((Path(folder) / "campaign.json").read_text()))
+        except (FileNotFoundError, NotADirectoryError):
+            raise RunError(f"{folder} is not the folder of a campaign: it holds no campaign.json") from None
+
+    @cached_property
+    def table(self):
+        """One row per complete run: name, sweeps, all keys, all quantities of its summary; sorted by keys.
+
+        A quantity that is named like a key but differs from it (a packing's phi) stands under NAME_measured.
+        """
+        rows = [row for row in map(self.row, self.plan["runs"]) if row]
+        table = pd.DataFrame(rows, columns=None if rows else ["run", "sweeps"])
+        return table.sort_values(self.varied(table) or ["run"], kind="stable", ignore_index=True)
+
+    def row(self, planned):
+        """Return the table's row of one planned run; None if it is not complete."""
+        try:
+            run = self.run(planned["name"])
+        except RunError:
+            return None
+        if run.state != "complete" or not run.summary:
+            return None
+        keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
+        measured = {f"{k}_measured" if k in keys else k: v for k, v in run.summary.items() if keys.get(k) != v}
+        facts = {fact: run.provenance.get(fact) for fact in FACTS}
+        return {"run": planned["name"], "sweeps": " ".join(planned["sweeps"]), **keys, **measured, **facts}
+
+    def run(self, name):
+        """Open one run folder."""
+        return Run(self.folder / "runs" / name)
+
+    def keys(self, table):
+        """Return the study's keys that are columns of the table."""
+        first = next((self.run(name) for name in table["run"]), None)
+        return [key for key in first.parameters if key in table] if first else []
+
+    def varied(self, table):
+        """Return the keys that are not the same in all runs, the seed last."""
+        keys = [key for key in self.keys(table) if table[key].nunique(dropna=False) > 1]
+        return sorted(keys, key=lambda key: key == "seed")
+
+    def common(self, table):
+        """Return {key: value} of the keys that are the same in all runs."""
+        return {key: table[key].iloc[0] for key in self.keys(table) if table[key].nunique(dropna=False) == 1}
+
+    def sweep(self, name):
+        """Return the rows of the table that belong to a sweep."""
+        return self.table[[name in sweeps.split() for sweeps in self.table["sweeps"]]]
+
+
+def write_report(folder):
+    """Write `table.csv` and, where the campaign has a report, its figures and `report.md`; return the last written."""
+    campaign = Campaign.of(folder)
+    table = campaign.folder / "table.csv"
+    results.write_text(table, campaign.table.to_csv(index=False))
+    if not campaign.plan["report"] or campaign.table.empty:
+        return table
+    report = importlib.import_module(f".{campaign.plan['report']}_campaign", __package__)
+    (campaign.folder / "figures").mkdir(exist_ok=True)
+    sections = report.report(campaign)
+    results.write_text(campaign.folder / "report.md", results.as_markdown(campaign, report.TITLE, sections))
+    return campaign.folder / "report.md"

@@ -1,0 +1,97 @@
+"""Report of a Magnus campaign: Figs. 2, 3, 5, 6, 7 and 8 of Kumar, Dhiman, Reddy, Phys. Rev. E 99, 012902 (2019)."""
+
+import numpy as np
+
+from . import figures, magnus_plots
+from .magnus_claims import angle_claims, drag_claims, friction_claims, lift_claims, speed_claims
+from .magnus_wake import wake_claims
+from .results import PlannedFigure
+
+TITLE = "Magnus effect: drag and lift on a spinning disk"
+SWEEPS = {
+    "speed": "several phi and v0, spin_ratio 0",
+    "spin": "several phi and spin_ratio, 0 among them, perhaps several v0",
+    "angles": "one phi, several spin_ratio with 0 and 1 among them, three seeds or more",
+    "fields": "one phi, spin_ratio 0, 1, 10, fields=1, three seeds or more",
+    "friction": "several phi and mu, one large spin_ratio",
+}
+RATES = ((0.352, 0.818), (450e6, 180e6))  # area fraction, particle-steps per second of one core (README)
+TIME_STEP, DIAMETER = 2e-6, 0.02  # of the study [s], [m]
+
+
+def report(campaign):
+    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
+    with figures.plt.rc_context(figures.STYLE):
+        return [planned.made(campaign) for planned in FIGURES if not campaign.sweep(planned.sweep).empty]
+
+
+def expected_core_seconds(parameters):
+    """Return what a run costs one core [s], packing aside, from its grains, its steps and the rates above.
+
+    Rates between are interpolated and stay the same beyond, and the walls of frozen disks are not counted.
+    """
+    phi, area = parameters["phi"], parameters["width"] * parameters["height"]
+    grains = phi * area / (np.pi / 4)
+    travel = parameters["width"] if parameters["travel"] is None else parameters["travel"]
+    steps = travel * DIAMETER / parameters["v0"] / (TIME_STEP * parameters["dt_factor"])
+    return float(grains * steps / np.interp(phi, *RATES))
+
+
+FIGURES = (
+    PlannedFigure(
+        "fig2",
+        "speed",
+        "Fig. 2: drag and contacts against speed",
+        "Mean drag and mean number of contacts of an intruder without spin against its speed. Paper: D ∝ V0², N linear when"
+        " dilute.",
+        speed_claims,
+        magnus_plots.against_speed,
+    ),
+    PlannedFigure(
+        "fig3",
+        "spin",
+        "Fig. 3: lift over drag against spin",
+        "Lift over drag against the spin ratio Ω = ωR/V0; lift counts along −ω×V. Paper: zero at Ω = 0, steepest near 1,"
+        " then flat.",
+        lift_claims,
+        magnus_plots.lift_against_spin,
+    ),
+    PlannedFigure(
+        "fig5",
+        "spin",
+        "Fig. 5: drag and contacts against spin",
+        "Drag and contacts over their values without spin. Paper: drag constant when dilute, rising when dense; fewer"
+        " contacts at large Ω.",
+        drag_claims,
+        magnus_plots.drag_against_spin,
+    ),
+    PlannedFigure(
+        "fig6",
+        "angles",
+        "Fig. 6: forces and contacts by angle",
+        "Normal force, tangential force over its limit, and contacts by angle from V, in 24 bins; θ counts"
+        " counter-clockwise for ω > 0 and F_T > 0 opposes the spin. Paper: contacts in front only, all of them slipping at"
+        " large Ω.",
+        angle_claims,
+        magnus_plots.forces_by_angle,
+    ),
+    PlannedFigure(
+        "fig7",
+        "fields",
+        "Fig. 7: fields around the intruder",
+        "Velocity relative to the intruder with streamlines, area fraction, granular temperature; V along +x, ω > 0. Paper:"
+        " the wake has an empty core, widens and bends with spin; grains are hottest on the advancing side at Ω = 10, on"
+        " the retreating side at Ω = 1.",
+        wake_claims,
+        magnus_plots.around_intruder,
+    ),
+    PlannedFigure(
+        "fig8",
+        "friction",
+        "Fig. 8: lift over drag against friction",
+        "Saturated lift over drag against friction, with the model: Eq. 9 (dilute) and Eq. 15 with the measured"
+        " κ = ΣF_N cos θ/D∞.",
+        friction_claims,
+        magnus_plots.lift_against_friction,
+    ),
+)

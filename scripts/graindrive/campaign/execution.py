@@ -1,0 +1,133 @@
+"""Carrying out a plan: its folder, Snakemake as a child that a signal ends cleanly, and what came of each run."""
+
+import contextlib
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from ..errors import Interrupted, UsageError
+from ..run_remains import stored_digest
+
+SNAKEFILE = Path(__file__).with_name("Snakefile")
+
+
+@contextlib.contextmanager
+def opened(folder, plan):
+    """Make the campaign's folder, hold its lock, and leave the plan in it as `campaign.json`."""
+    try:
+        for name in ("runs", "logs", "done"):
+            (folder / name).mkdir(parents=True, exist_ok=True)
+        lock = open(folder / ".lock", "w")
+    except OSError as error:
+        raise UsageError(f"out={folder} cannot be written ({error.strerror}); give --out a folder of yours") from None
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
+        write_json(folder / "campaign.json", as_plain(plan))
+        yield
+
+
+def as_plain(plan):
+    """Return a plan as a dict for JSON: what the Snakefile and the report need of it."""
+    return {
+        "name": plan.name,
+        "file": plan.file,
+        "origin": str(plan.origin),
+        "study": plan.study,
+        "study_file": str(plan.study_file),
+        "report": plan.report,
+        "runs": [
+            {"name": run.name, "arguments": run.arguments, "sweeps": run.sweeps, "digest": run.parameters.digest()}
+            for run in plan.runs
+        ],
+    }
+
+
+def write_json(path, content):
+    """Write JSON in one step."""
+    temporary = path.with_name(f".{path.name}.tmp")
+    temporary.write_text(json.dumps(content, indent=1) + "\n")
+    os.replace(temporary, path)
+
+
+def missing(folder, plan):
+    """Return the planned runs that have no complete run folder."""
+    return [run for run in plan.runs if stored_digest(folder / "runs" / run.name) != run.parameters.digest()]
+
+
+def set_marks(folder, plan):
+    """Make the marks in `done/` agree with the run folders, which may have been removed, or made by hand."""
+    names = {run.name for run in missing(folder, plan)}
+    for run in plan.runs:
+        mark = folder / "done" / run.name
+        mark.unlink(missing_ok=True) if run.name in names else mark.touch()
+
+
+def carry_out(folder, plan, cores, options):
+    """Have Snakemake make the runs that are missing; return its exit code. A signal ends it and its runs, and is raised.
+
+    Snakemake gets a process group of its own, so that each run hears of Ctrl-C, or of a SIGTERM, exactly once.
+    """
+    set_marks(folder, plan)
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        SNAKEFILE,
+        "--directory",
+        folder,
+        *ours(cores, options),
+    ]
+    child = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, process_group=0, preexec_fn=hear_interrupts, env=environment()
+    )
+    try:
+        return child.wait()
+    except (Interrupted, KeyboardInterrupt):
+        print("graindrive: stopping; what the runs have so far is kept for the next call", file=sys.stderr)
+        end_group(child)
+        raise
+
+
+def hear_interrupts():
+    """Let SIGINT through to Snakemake and the runs: a shell has it ignored in what it starts in the background."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def ours(cores, options):
+    """Return Snakemake's options, the user's last; marks are true, and locks are the campaign's own."""
+    manners = ["--keep-going", "--nolock", "--ignore-incomplete", "--rerun-triggers", "mtime", "--nocolor"]
+    return ["--cores", str(cores), *manners, *options]
+
+
+def environment():
+    """Return the environment of the runs: one core each."""
+    return {**os.environ, "OMP_NUM_THREADS": "1"}
+
+
+def end_group(child):
+    """Pass the signal on to Snakemake and its runs, as Ctrl-C, and wait until all have gone."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGINT)
+    child.wait()
+
+
+def failures(folder, plan):
+    """Return {name of a run that is missing: last words of its log}."""
+    return {run.name: last_words(folder / "logs" / f"{run.name}.log") for run in missing(folder, plan)}
+
+
+def last_words(log):
+    """Return the last line of a log that holds something."""
+    try:
+        lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
+    except FileNotFoundError:
+        lines = []
+    return lines[-1] if lines else "it has not been started"

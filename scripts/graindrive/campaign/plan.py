@@ -1,0 +1,241 @@
+"""The plan of a campaign: from a YAML of values to checked, named runs; nothing is run or written here.
+
+    study: magnus                    # of studies/, or a file beside this one
+    report: magnus                   # graindrive.postproc.magnus_campaign; may be left out
+    common: {mu: 0.5, width: 100}    # keys of the study, for all runs
+    sweeps:                          # each a grid, or a list of grids: lists of values are crossed
+      speed: {phi: [0.352, 0.818], v0: [0.5, 1, 2], seed: [1, 2]}
+      spin:
+        - {phi: 0.352, spin_ratio: [0, 1, 10]}
+        - {phi: 0.818, spin_ratio: [0, 10]}
+"""
+
+import contextlib
+import importlib
+import importlib.util
+import itertools
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import yaml
+
+from .. import headless
+from ..command_line import nearest, parse
+from ..errors import UsageError, one_line
+
+KEYS = ("study", "report", "common", "sweeps")
+OWN_KEYS = {  # of a study, which a campaign sets itself
+    "out": "the campaign names its run folders",
+    "resume": "a campaign always resumes",
+    "redo": "remove a run folder to have it made again",
+}
+LONGEST_NAME = 120
+MOST_RUNS = 100_000
+
+
+@dataclass
+class PlannedRun:
+    """One run: its folder's `name`, the study's `arguments` (key=value), its `parameters` and the sweeps it is for."""
+
+    name: str
+    arguments: list
+    parameters: object
+    sweeps: list = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A campaign.
+
+    `file` is named from the top of the checkout if it lies there; `origin` is the folder from which values name files;
+    `report` is "" for none; the runs stand in the order of the YAML.
+    """
+
+    name: str
+    file: str
+    origin: Path
+    study: str
+    study_file: Path
+    report: str
+    runs: list
+
+
+def read_plan(path):
+    """Return the checked `Plan` of the campaign file `path`; UsageError names the first thing that is wrong."""
+    path = Path(path)
+    content = read_yaml(path)
+    check_keys(path, content)
+    study_file = find_study(path, content["study"])
+    report = content.get("report") or ""
+    check_report(path, report, content["sweeps"])
+    study = declared(study_file)
+    with contextlib.chdir(path.parent):  # files that values name (an outline) are named from the campaign's file
+        runs = planned_runs(path, content, study)
+    return Plan(path.stem, named_in_house(path), path.resolve().parent, study.name, study_file, report, runs)
+
+
+def named_in_house(path):
+    """Return the file's name from the top of this checkout; its bare name if it lies elsewhere."""
+    top = studies_folder().parent
+    return str(path.resolve().relative_to(top)) if path.resolve().is_relative_to(top) else path.name
+
+
+# ---- the file --------------------------------------------------------------------------------------------------------
+
+
+class StrictLoader(yaml.SafeLoader):
+    """YAML whose mappings may not name a key twice: the first value would be lost without a word."""
+
+    def construct_mapping(self, node, deep=False):
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise UsageError(f"line {node.start_mark.line + 1}: {one_line(key)} is given twice; keep one")
+        return super().construct_mapping(node, deep)
+
+
+def read_yaml(path):
+    """Return the mapping that the file holds."""
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), StrictLoader)  # noqa: S506 (derived from SafeLoader)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read ({error.strerror}); give the YAML file of a campaign") from None
+    except (yaml.YAMLError, UnicodeError, TypeError) as error:
+        raise UsageError(f"{path} is not YAML: {one_line(error, 200)}") from None
+    if not isinstance(content, dict):
+        raise UsageError(f"{path} must hold the keys {', '.join(KEYS)}, got {one_line(content)}")
+    return content
+
+
+def check_keys(path, content):
+    """Refuse keys that are unknown, missing or of the wrong kind."""
+    for key in content:
+        if key not in KEYS:
+            hint = nearest(key, KEYS, "did you mean ", "? ")
+            raise UsageError(f"{path}: there is no key '{one_line(key)}'; {hint}allowed: {' '.join(KEYS)}")
+    for key, kind, words in (("study", str, "the name of a study"), ("sweeps", dict, "names with grids of values")):
+        if not isinstance(content.get(key), kind) or not content[key]:
+            raise UsageError(f"{path}: {key} must be {words}, got {one_line(content.get(key))}")
+    if not isinstance(content.get("common") or {}, dict):
+        raise UsageError(f"{path}: common must be keys of the study with values, got {one_line(content['common'])}")
+
+
+def find_study(path, name):
+    """Return the file of the study: below studies/ of this checkout, or a .py file named relative to the campaign's."""
+    if name.endswith(".py"):
+        file = path.parent / name
+        if not file.is_file():
+            raise UsageError(f"{path}: study={one_line(name)}: there is no file {file}")
+        return file.resolve()
+    folder = studies_folder()
+    known = sorted(p.stem for p in folder.glob("[!_]*.py") if p.stem != "house")
+    if name not in known:
+        hint = nearest(name, known, "did you mean ", "? ")
+        raise UsageError(f"{path}: there is no study '{one_line(name)}'; {hint}there are: {' '.join(known)}")
+    return folder / f"{name}.py"
+
+
+def studies_folder():
+    """Return the folder of the studies of this checkout."""
+    return Path(headless.__file__).resolve().parents[2] / "studies"
+
+
+def check_report(path, report, sweeps):
+    """Refuse a report that is not there, and sweeps that it would not look at."""
+    if not report:
+        return
+    module = report_module(report)
+    if module is None:
+        raise UsageError(f"{path}: there is no report '{one_line(report)}': no graindrive.postproc.{report}_campaign")
+    for sweep in sweeps:
+        if sweep not in module.SWEEPS:
+            hint = nearest(sweep, module.SWEEPS, "did you mean ", "? ")
+            raise UsageError(
+                f"{path}: report {report} knows no sweep '{one_line(sweep)}'; {hint}it uses: {' '.join(module.SWEEPS)}"
+            )
+
+
+def report_module(report):
+    """Return the module of the report named `report`; None if there is none."""
+    name = f"graindrive.postproc.{report}_campaign"
+    known = str(report).isidentifier() and importlib.util.find_spec(name)
+    return importlib.import_module(name) if known else None
+
+
+def declared(study_file):
+    """Return what the study declares; UsageError if the file is no study."""
+    try:
+        return headless.declaration_of(study_file)
+    except RuntimeError as error:
+        raise UsageError(str(error)) from None
+
+
+# ---- runs ------------------------------------------------------------------------------------------------------------
+
+
+def planned_runs(path, content, study):
+    """Return the `PlannedRun`s of all sweeps, each run once however many sweeps need it."""
+    runs = {}
+    for sweep, grids in content["sweeps"].items():
+        for values in crossed(f"{path}: sweep {one_line(sweep)}", grids, content.get("common") or {}):
+            run = planned_run(f"{path}: sweep {one_line(sweep)}", values, study)
+            known = runs.setdefault(run.name, run)
+            known.sweeps += [] if sweep in known.sweeps else [str(sweep)]
+            if len(runs) > MOST_RUNS:
+                raise UsageError(f"{path}: sweep {one_line(sweep)} makes more than {MOST_RUNS} runs; give fewer values")
+    return list(runs.values())
+
+
+def crossed(place, grids, common):
+    """Yield a dict of single values for each combination of the lists in a grid, or in each of a list of grids."""
+    for grid in grids if isinstance(grids, list) else [grids]:
+        if not isinstance(grid, dict):
+            raise UsageError(f"{place} must be keys with values or lists of values, got {one_line(grid)}")
+        merged = {**common, **grid}
+        axes = [value if isinstance(value, list) else [value] for value in merged.values()]
+        for key, axis in zip(merged, axes):
+            if not axis:
+                raise UsageError(f"{place}: {one_line(key)} has no values; give at least one")
+        for combination in itertools.product(*axes):
+            yield dict(zip(merged, combination))
+
+
+def planned_run(place, values, study):
+    """Return the `PlannedRun` for a dict of single values, checked by the study's own class of parameters."""
+    for key, reason in OWN_KEYS.items():
+        if key in values:
+            raise UsageError(f"{place}: {key} is not for campaigns: {reason}; leave it out")
+    try:
+        arguments = [argument(key, value) for key, value in values.items()]
+        p = parse(study.parameters, arguments, study.presets, study=study.name, defaults=study.defaults, environment={})
+    except UsageError as error:
+        raise UsageError(f"{place}: {error}") from None
+    return PlannedRun(run_name(p, study), arguments, p)
+
+
+def argument(key, value):
+    """Return a YAML scalar as the study's command line takes it."""
+    if isinstance(value, (dict, list, tuple)):
+        raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {one_line(value)}")
+    if value is None:
+        value = "auto"
+    return f"{key}={int(value) if isinstance(value, bool) else value}"
+
+
+def run_name(p, study):
+    """Return the name of a run's folder: what differs from the study's own values, and the digest of all.
+
+    It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again.
+    """
+    usual = {k: f.default for k, f in study.parameters.__fields__.items()} | study.defaults | study.presets[p.scale]
+    identity = {key: value for key, value in p.dict().items() if key in p.identity()}
+    told = [f"{key}_{shortly(value)}" for key, value in sorted(identity.items()) if value != usual.get(key)]
+    text = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in "-".join([study.name, *told]))
+    return f"{text[: LONGEST_NAME - 13]}-{p.digest()}"
+
+
+def shortly(value):
+    """Return a value for a folder's name: numbers without needless digits, switches as 0 and 1."""
+    return f"{value:g}" if isinstance(value, (int, float)) else str(value)
