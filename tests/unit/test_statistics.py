@@ -143,7 +143,9 @@ def test_errors_of_rates_by_phase_are_those_of_independent_cycles():
     assert np.sqrt(np.mean(rates**2)) == pytest.approx(1 / 30, rel=0.4)  # 3 sigma of 40 values
 
 
-@pytest.mark.parametrize("start, end, known", [(0, 0.5, 0), (0.2, 1.9, 0), (np.nan, np.nan, 0), (0.2, 2.0, 1), (0.0, 1.0, 1)])
+@pytest.mark.parametrize(
+    "start, end, known", [(0, 0.5, 0), (0.2, 1.9, 0), (np.nan, np.nan, 0), (0.2, 2.0, 1), (0.0, 1.0, 1)]
+)
 def test_only_whole_cycles_make_rates_by_phase(start, end, known):
     t = np.linspace(0, 3, 61)
     _, rates, errors = phase_rates(t, t, 1.0, start, end, parts=4)
