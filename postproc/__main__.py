@@ -1,27 +1,32 @@
-"""Redraw the figure of run folders: `python3 -m graindrive.postproc OUT … [frame=N]`."""
+"""Redraw the figure of run folders, or film them: `python3 -m graindrive.postproc OUT … [frame=N] [animation=1]`."""
 
 import sys
 
-from . import magnus, wiggle
+from . import animation, magnus, wiggle
 from .reader import Run, RunError
 
 FIGURES = {"wiggle": wiggle.draw, "magnus": magnus.draw}
+KEYS = ("frame=", "animation=")
 
 
 def main(arguments):
     """Draw the figures that the arguments ask for; return the exit code: 0, or 2 after one line on stderr."""
     if not arguments or {"help", "-h", "--help"} & set(arguments):
-        print("usage: python3 -m graindrive.postproc OUT … [frame=N]   (frame: place in time, -1 is the last)")
+        print("usage: python3 -m graindrive.postproc OUT … [frame=N] [animation=1]")
+        print("frame: place in time of the picture, -1 is the last; animation: also film all frames, as animation.mp4")
         return 0 if arguments else 2
     try:
-        options = dict(a.split("=", 1) for a in arguments if a.startswith("frame="))
-        frame = int(options.get("frame", -1))
-        for path in (a for a in arguments if not a.startswith("frame=")):
+        options = dict(a.split("=", 1) for a in arguments if a.startswith(KEYS))
+        frame, filmed = (int(options.get(key, usual)) for key, usual in (("frame", -1), ("animation", 0)))
+        for path in (a for a in arguments if not a.startswith(KEYS)):
             print(f"{path}: drawing figure.png and figure.pdf")
             figure_of(path)(path, frame)
+            if filmed:
+                print(f"{path}: filming animation.mp4")
+                film_of(path)
         return 0
     except ValueError as error:
-        print(f"graindrive.postproc: error: frame must be a whole number, got {error}", file=sys.stderr)
+        print(f"graindrive.postproc: error: frame and animation must be whole numbers, got {error}", file=sys.stderr)
     except RunError as error:
         print(f"graindrive.postproc: error: {error}", file=sys.stderr)
     return 2
@@ -33,6 +38,13 @@ def figure_of(path):
     if study not in FIGURES:
         raise RunError(f"{path} holds a run of {study}, which has no figure yet; there are: {', '.join(FIGURES)}")
     return FIGURES[study]
+
+
+def film_of(path):
+    """Film the run in `path`; RunError for a study whose frames cannot be filmed."""
+    if figure_of(path) is not wiggle.draw:
+        raise RunError(f"{path} is no run of wiggle; only those can be filmed yet")
+    animation.film(path)
 
 
 if __name__ == "__main__":

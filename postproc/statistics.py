@@ -157,3 +157,20 @@ def end_of_motion(cycle_y, first, rest):
     arrival = moving[-1] + 2 if len(moving) else 0
     rests_long = len(cycle_y) - arrival >= max(5, 0.1 * len(cycle_y))
     return int(arrival) if rests_long and arrival - first >= 2 else len(cycle_y)
+
+
+def phase_rates(t, y, period, start, end, parts=20):
+    """Return (phases, rates, errors), each (parts,): mean velocity of a shaken body in each part of the cycle.
+
+    `t`, `y` (n,): time from the drive's start, and position, interpolated linearly; whole cycles between the times `start`
+    and `end` count. Phases are the parts' middles in cycles, in (0, 1); errors are standard errors over the cycles.
+    NaN where no whole cycle lies between, errors NaN where only one does.
+    """
+    phases = (np.arange(parts) + 0.5) / parts
+    first, last = np.ceil(start / period - 1e-9), np.floor(end / period + 1e-9)
+    if not last > first:  # NaN where nothing was averaged
+        return phases, np.full(parts, np.nan), np.full(parts, np.nan)
+    edges = period * (first + np.arange(int(last - first) * parts + 1) / parts)
+    rates = np.diff(np.interp(edges, t, y)).reshape(-1, parts) * parts / period
+    means = [block_mean(column) for column in rates.T]
+    return phases, np.array([m.value for m in means]), np.array([m.error for m in means])

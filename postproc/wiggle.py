@@ -1,4 +1,4 @@
-"""The figure of the wiggle study: the intruder's height over time, and the bed with speeds and force chains."""
+"""The figure of the wiggle study: height over time, rise rate by phase, and the bed with speeds and force chains."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from .figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, draw_chains, draw_grains, save
 from .reader import BASE, GRAIN, INTRUDER, Run
-from .statistics import drift
+from .statistics import drift, phase_rates
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
 NAMES = {"disk": "disk", "square": "square", "tall": "tall rectangle", "wide": "wide rectangle", "triangle": "triangle"}
@@ -21,17 +21,21 @@ def draw(path, frame=-1):
     with plt.rc_context(STYLE):
         bed = run.frame(frame) if run.frame_names else None
         box = view(run, bed) if bed else None
-        heights = [1.7, 0.5 + 2.55 * box[1, 1] / box[1, 0]] if bed else [1.7]
+        heights = [1.7, 1.2] + ([0.5 + 2.55 * box[1, 1] / box[1, 0]] if bed else [])
         size = (COLUMN_WIDTH, 0.2 + sum(heights))
         figure, axes = plt.subplots(
             len(heights), 1, figsize=size, height_ratios=heights, squeeze=False, layout="constrained"
         )
         figure.suptitle(title(run), fontsize=8)
         draw_height(axes[0, 0], run)
+        draw_phases(axes[1, 0], run)
         if bed:
-            draw_bed(figure, axes[1, 0], run, bed, box)
-            axes[0, 0].set_title("(a)", loc="left")
-            axes[1, 0].set_title("(b)", loc="left")
+            circles = draw_bed(axes[2, 0], run, bed, box)
+            bar = figure.colorbar(circles, ax=axes[2, 0], pad=0.02, fraction=0.05, aspect=25, extend="max")
+            bar.set_label(r"speed  [$\sqrt{gd}$]")
+            bar.ax.minorticks_off()
+        for letter, panel in zip("abc", axes[:, 0]):
+            panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
 
@@ -48,6 +52,21 @@ def draw_height(axes, run):
     axes.set(xlabel=r"$t$  [$\sqrt{d/g}$]", ylabel=r"$y - y_0$  [$d$]")
     axes.legend(loc="best", framealpha=0.8, edgecolor="none", handlelength=1.4, borderaxespad=0.3)
     draw_period(axes, period)
+
+
+def draw_phases(axes, run):
+    """Rise rate by phase of the cycle with its standard error; dashed, where the body turns."""
+    t, y, period = run.series["t"], run.series["y"], float(run.parameters["period"])
+    found = drift(t, y, period)
+    phases, rates, errors = phase_rates(t, y, period, found.start, found.end)
+    if np.isfinite(rates).any():
+        axes.errorbar(phases, rates, np.nan_to_num(errors), fmt="o-", color=BLUE, markersize=2, elinewidth=0.6)
+    else:
+        axes.text(0.5, 0.5, "no whole cycle to average", transform=axes.transAxes, ha="center", va="center")
+    axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
+    for turn in (0.25, 0.75):
+        axes.axvline(turn, color=GREY, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)
+    axes.set(xlim=(0, 1), xlabel=r"phase $t/T$", ylabel=r"$V_y$  [$\sqrt{gd}$]")
 
 
 def title(run):
@@ -107,8 +126,11 @@ def view(run, bed):
     return np.array([[left, np.clip(y - size[1] / 2, bottom, top - size[1])], size])
 
 
-def draw_bed(figure, axes, run, bed, box):
-    """Grains coloured by speed, force chains as lines as wide as their normal force, base in grey, intruder outlined."""
+def draw_bed(axes, run, bed, box, norm=None):
+    """Grains coloured by speed, force chains as lines as wide as their normal force, base in grey, intruder outlined.
+
+    `box` is from `view`, `norm` the scale of colours if not this frame's own; returns the circles, for a colour bar.
+    """
     x, y, r = (np.asarray(bed.grains[name], dtype=float) for name in ("x", "y", "r"))
     (left, bottom), (width, height) = box
     period_x = float(run.parameters["width"])
@@ -116,7 +138,7 @@ def draw_bed(figure, axes, run, bed, box):
     shown = (x < left + width + 1) & (np.abs(y - bottom - height / 2) < height / 2 + 1)
     grains, base = shown & (bed.role == GRAIN), shown & (bed.role == BASE)
     speeds = bed.speed
-    norm = PowerNorm(0.5, 0, max(np.quantile(speeds[grains], 0.995), 1e-12) if grains.any() else 1)
+    norm = norm or speed_scale([speeds[grains]])
     circles = draw_grains(axes, x[grains], y[grains], r[grains], values=speeds[grains], cmap="YlGnBu", norm=norm)
     draw_grains(axes, x[base], y[base], r[base], colour=GREY)
     draw_forces(axes, bed, x, y, period_x, shown, widest=0.35 * 72 * 2.55 / width)
@@ -125,9 +147,13 @@ def draw_bed(figure, axes, run, bed, box):
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height), aspect="equal")
     axes.set(xlabel=r"$x$  [$d$]", ylabel=r"$y$  [$d$]")
     axes.set_title(rf"$t$ = {bed.t:.4g} $\sqrt{{d/g}}$")
-    bar = figure.colorbar(circles, ax=axes, pad=0.02, fraction=0.05, aspect=25, extend="max")
-    bar.set_label(r"speed  [$\sqrt{gd}$]")
-    bar.ax.minorticks_off()
+    return circles
+
+
+def speed_scale(speeds):
+    """Return the scale of colours for speeds, arrays of one or many frames; a few fast grains do not spoil it."""
+    speeds = np.concatenate(speeds)
+    return PowerNorm(0.5, 0, max(np.quantile(speeds, 0.995), 1e-12) if len(speeds) else 1)
 
 
 def draw_forces(axes, bed, x, y, period_x, shown, widest):

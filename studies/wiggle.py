@@ -7,19 +7,32 @@ x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d,
 Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
 velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
 
-Cost: the paper's size is 63,000 disks and 1e7 steps, hours on two cores; the demo is 11,500 disks and 1.2e5 steps, a minute or
-two. The demo shows the motion, not the paper's rates: a shallower bed presses less, so it is fluidised farther.
+Cost: the paper's size is 63,000 disks and 1e7 steps, two hours of one core; the demo is 11,500 disks and 1.2e5 steps, a minute
+or two. A lid presses for the bed that the demo leaves out (0.84 rho g d for each d of it).
+
+What a cheaper scene changes, for the disk at A = 3, time = 100, dt_factor = 5: V_y in sqrt(g d), with the larger of the errors
+that cycles and, from three on, seeds give (studies/campaigns/wiggle_scene.yaml measures it all, with three seeds each):
+
+    scene                                   T = 4, rises               T = 1, sinks
+    300 x 195 d, depth 105 d                 0.101 +- 0.013 (1 seed)   -0.11 +- 0.04 (1 seed, time = 60)
+    120 x 90 d, depth 50 d, rigid lid        0.082 +- 0.021 (3 seeds)  -0.02 +- 0.03 (2 seeds)
+    120 x 90 d, depth 50 d, lid of grains    0.066 +- 0.010 (2 seeds)  -0.09 +- 0.04 (1 seed)
+    120 x 90 d, depth 50 d, no lid           0.090 +- 0.017 (1 seed)   -0.04 +- 0.03 (1 seed)
+    80 x 60 d, depth 30 d, rigid lid         0.067 +- 0.009 (3 seeds)   0.00 +- 0.03 (1 seed)
+    the second with dt_factor = 2.5          0.079 +- 0.008 (2 seeds)
+
+At T = 4 the 120 d scenes differ from the full one by about two errors or less, the time step by nothing that shows; the
+smallest rises a third too slowly. At T = 1 a rigid lid seems to hinder sinking, by some two errors. Heavy grains do not, but
+they break into the cavity of a body at 30 d: after 75 sqrt(d/g) they buried it. Seeds scatter by 0.03, more than one run's
+cycles tell: average over three or more.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
     scripts/run wiggle help                         all keys
 """
 
-import functools
-import hashlib
 import os
 import sys
-from pathlib import Path
 from typing import Literal
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
@@ -28,20 +41,32 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import engines, headless, packing, progress, scene  # noqa: E402
-from graindrive.errors import UsageError, one_line  # noqa: E402
+from graindrive import engines, fields, headless, intruder, lid, packing, progress, recording, scene  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import wiggle as results  # noqa: E402
-from graindrive.postproc.statistics import drift  # noqa: E402
+from graindrive.postproc.statistics import drift, phase_rates  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
 TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
 SAMPLES_PER_PERIOD = 40
 SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
-CHECKPOINT_SECONDS = 60
-CHECKPOINT = "scene.checkpoint"
+SKIPPED = 0.1  # of the run, before averages begin
+PHASES = 20  # parts of the cycle
+FIELD_REACH, FIELD_SAMPLES = 15, 100  # d from the body; samples of the fields per period
+SERIES = dict(
+    t="sqrt(d/g)",
+    x="d",
+    y="d",
+    vx="sqrt(d g)",
+    vy="sqrt(d g)",
+    fx="rho d^2 g",
+    fy="rho d^2 g",
+    contacts="-",
+    work="rho g d^3",
+)
 
 
 class WiggleParameters(StudyParameters):
@@ -63,31 +88,23 @@ class WiggleParameters(StudyParameters):
     frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1, le=9999)
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    orientation_deg: float = quantity(0.0, "degrees", "the shape turned counter-clockwise about its centroid")
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
+    bead_spacing: float = quantity(1.0, "bead diameters", "longest step between beads along the outline", gt=0, le=1)
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
+    fields: bool = quantity(False, "-", "also average area fraction, velocity and pressure around the body by phase")
+    lid_pressure: float = quantity(0.0, "rho d g", "weight over width of a lid: 0.84 for every d of bed left out", ge=0)
+    lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
 
     def identity(self):
         """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
-        return {**super().identity(), **({"outline": contents_of(self.shape)} if names_a_file(self.shape) else {})}
-
-
-def names_a_file(shape):
-    """True for an outline's file, False for the name of a built-in shape."""
-    return shape.lower().endswith((".wkt", ".csv"))
-
-
-@functools.lru_cache(maxsize=None)
-def contents_of(path):
-    """Return what stands for a file's contents, as they are when the program first asks; "" if it cannot be read."""
-    try:
-        return hashlib.sha256(Path(path).expanduser().read_bytes()).hexdigest()[:12]
-    except (OSError, RuntimeError):
-        return ""
+        outline = {"outline": intruder.contents_of(self.shape)} if intruder.names_a_file(self.shape) else {}
+        return {**super().identity(), **outline}
 
 
 PRESETS = {
     "smoke": dict(width=26, height=18, depth=8, time=4, amplitude=1.5, period=2, frames=2, dt_factor=5, rest=0.05),
-    "demo": dict(width=120, height=90, depth=50, time=60, period=4, dt_factor=5, rest=1e-3),
+    "demo": dict(width=120, height=90, depth=50, lid_pressure=46.2, time=60, period=4, dt_factor=5, rest=1e-3),
     "paper": {},
 }
 
@@ -99,36 +116,19 @@ def material(p):
     return HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, p.mu, 1.0)
 
 
-def intruder(p):
-    """Return the outline about its centroid, shape (m, 2), and the clump of beads inside it."""
-    try:
-        is_file = names_a_file(p.shape)
-        outline = engines.read_outline(os.path.expanduser(p.shape)) if is_file else engines.outline_of(p.shape)
-        clump = engines.clump_of(outline, p.bead_diameter, p.intruder_mass)
-    except ValueError as error:  # without words where the file holds no text
-        reason = one_line(error, 400) or "it must be a text file of vertices in WKT or CSV"
-        raise UsageError(f"shape={one_line(p.shape)}: {reason}") from None
-    return outline, clump
-
-
-def check_room(p, outline):
-    """The body must fit into the bed with its whole motion."""
-    centred = outline.vertices - np.array(outline.centroid)
-    (left, bottom), (right, top) = centred.min(axis=0), centred.max(axis=0)
+def body_of(p):
+    """Return the body, after checking that the bed has room for its motion."""
+    body = intruder.make(
+        p.shape,
+        orientation_deg=p.orientation_deg,
+        bead_diameter=p.bead_diameter,
+        bead_spacing=p.bead_spacing,
+        mass=p.intruder_mass,
+    )
     swing = p.amplitude if p.drive == "displacement" else p.amplitude * p.period / (2 * np.pi)
-    needed = right - left + 2 * swing + 4
-    if needed > p.width:
-        raise UsageError(
-            f"width={p.width:g} d is too small for the body and its motion, which need {needed:g} d;"
-            " raise width or lower amplitude"
-        )
-    if p.height - p.depth + bottom < 1:
-        raise UsageError(
-            f"height={p.height:g} d and depth={p.depth:g} d put the body into the base; raise height or lower depth"
-        )
-    if p.depth < top:
-        raise UsageError(f"depth={p.depth:g} d lets the body stick out of the bed by {top - p.depth:g} d; raise depth")
-    return centred
+    roof = lid.room(p.lid, p.lid_pressure)
+    intruder.check_room(body, swing=swing, width=p.width, height=p.height, depth=p.depth, lid=roof)
+    return body
 
 
 def check_period(p, dt):
@@ -140,8 +140,9 @@ def check_period(p, dt):
         )
 
 
-def make_bed(p, vertices, area, clump, at, dt, grains):
+def make_bed(p, body, at, dt, grains):
     """Return the settled bed around the held body, from the cache or by pouring it."""
+    beads, outline = body.placed(at)
     return packing.settled_bed(
         packing.BedRecipe(
             width=p.width,
@@ -149,13 +150,15 @@ def make_bed(p, vertices, area, clump, at, dt, grains):
             d_min=SMALLEST_DIAMETER,
             d_max=LARGEST_DIAMETER,
             material=grains,
-            beads=tuple(map(tuple, clump.beads + at)),
-            bead_radius=clump.bead_radius,
-            outline=tuple(map(tuple, vertices + at)),
-            outline_area=area,
+            beads=beads,
+            bead_radius=body.clump.bead_radius,
+            outline=outline,
+            outline_area=body.area,
             dt=dt,
             rest=p.rest,
             seed=p.seed,
+            lid=p.lid,
+            lid_pressure=p.lid_pressure,
         )
     )
 
@@ -166,103 +169,105 @@ def make_bed(p, vertices, area, clump, at, dt, grains):
 def run(p, folder):
     """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
     grains, dt = material(p), TIME_STEP * p.dt_factor
-    outline, clump = intruder(p)
-    vertices = check_room(p, outline)
+    body = body_of(p)
     ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
     check_period(p, dt)
     progress.require_feasible(p.time / dt)
     if folder.resumed:
-        stage = {name: folder.resumed[name] for name in ("base", "grains", "body")}
-        scene.load(folder.resumed["folder"] / CHECKPOINT)
+        stage = {name: folder.resumed[name] for name in ("base", "grains", "body", "lid")}
+        recording.load_scene(folder)
     else:
-        stage = build(p, grains, dt, clump, vertices, outline.area)
+        at = np.array([p.width / 2, p.height - p.depth])
+        stage = build(p, body, at, make_bed(p, body, at, dt, grains), dt, grains)
     folder.note(dt=dt, dt_over_critical=ratio, n_grains=stage["grains"])
     folder.write(
-        "intruder", dict(beads=(clump.beads, "d"), outline=(vertices, "d"), bead_radius=(clump.bead_radius, "d"))
+        "intruder",
+        dict(beads=(body.clump.beads, "d"), outline=(body.vertices, "d"), bead_radius=(body.clump.bead_radius, "d")),
     )
+    folder.summarize(fall_height=body.fall_height, intruder_height=body.height)
     print(f"{stage['grains']} grains, dt = {dt:.3g} sqrt(d/g), dt/dt_crit = {ratio:.3g}", file=sys.stderr)
     record(p, folder, stage)
 
 
-def build(p, grains, dt, clump, vertices, area):
-    """Put bed, body, drive and measure into YADE; return the counts of base and grains and the body's id."""
+def build(p, body, at, bed, dt, grains):
+    """Put bed, lid, body, drive and measures into YADE; return counts of base and grains, ids of body and lid."""
     from yade import O
 
-    at = np.array([p.width / 2, p.height - p.depth])
-    bed = make_bed(p, vertices, area, clump, at, dt, grains)
-    scene.start(p.width, float(bed["y"].max()) + 2 * p.amplitude + 10)
+    scene.start(p.width, float(np.max(bed["y"], initial=p.height)) + 2 * p.amplitude + 10)
     base = scene.add_base(p.width, 1.0, grains.density)
-    ids = scene.add_disks(bed["x"], bed["y"], bed["r"], grains.density)
-    body = scene.add_intruder(clump, *at, blocked="xzXYZ")
-    drive = engines.OscillationDrive(body=body, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
-    binner = engines.ContactForceBinner(body=body, label="binner")
+    ids = scene.add_disks(bed["x"], bed["y"], bed["r"], bed["density"])
+    held = scene.add_intruder(body.clump, *at, blocked="xzXYZ")
+    roof = scene.members(lid.add_rigid(p.width, float(bed["lid_y"]), p.lid_pressure)) if "lid_y" in bed else []
+    drive = engines.OscillationDrive(body=held, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
+    measures = [engines.ContactForceBinner(body=held, label="binner"), *field_measures(p, held, dt)]
     O.dt = dt
     scene.run_on(
-        p.loop, grains, gravity=1.0, between=[binner, drive], precision=p.precision, largest_overlap=p.largest_overlap
+        p.loop,
+        grains,
+        gravity=1.0,
+        between=[*measures, drive],
+        precision=p.precision,
+        largest_overlap=p.largest_overlap,
     )
-    return dict(base=len(base), grains=len(ids), body=body)
+    return dict(base=len(base), grains=len(ids), body=held, lid=roof)
+
+
+def field_measures(p, held, dt):
+    """Return the averager of Eqs 3.1-3.5 around the body, by phase, if fields were asked for; asleep until V_y counts."""
+    if not p.fields:
+        return []
+    reach = min(FIELD_REACH, 2 * int(p.width / 4))
+    corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=0.5)
+    phases = dict(phases=PHASES, period=p.period, every=max(1, round(p.period / FIELD_SAMPLES / dt)))
+    return [
+        engines.FieldAverager(
+            body=held, kernel="gaussian", width=1, cutoff=3, dead=True, label="around", **corners, **phases
+        )
+    ]
 
 
 def record(p, folder, stage):
-    """Run in blocks, a fortieth of a period each, and keep series, frames and checkpoints."""
+    """Run in blocks, a fortieth of a period each; keep series, frames, checkpoints, then rise rates and fields."""
     from yade import O
 
-    folder.declare_series(
-        t="sqrt(d/g)",
-        x="d",
-        y="d",
-        vx="sqrt(d g)",
-        vy="sqrt(d g)",
-        fx="rho d^2 g",
-        fy="rho d^2 g",
-        contacts="-",
-        work="rho g d^3",
-    )
-    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
+    folder.declare_series(**SERIES)
     state, drive, binner = O.bodies[stage["body"]].state, O.labeledEngine("drive"), O.labeledEngine("binner")
+    around = O.labeledEngine("around") if p.fields else None
     steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
-    first = folder.resumed["step"] if folder.resumed else 0
-    track = list(np.load(folder.resumed["folder"] / "track.npy")) if folder.resumed else []
-    frames_due = list(np.linspace(0, steps, p.frames).round()[folder.frames :])
-    checkpoints = progress.Every(CHECKPOINT_SECONDS)
+    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
+    frames_due, track = list(np.linspace(0, steps, p.frames).round()[folder.frames :]), recording.Track(folder)
 
     def sample(done):
-        t, position, velocity = done * O.dt, state.pos, state.vel
-        if not position[1] > 0:
-            raise RuntimeError(f"step {done}: the body fell through the base, to y = {position[1]:.3g} d")
-        track.append((t, position[1]))
-        folder.append(
-            t=t,
-            x=position[0],
-            y=position[1],
-            vx=velocity[0],
-            vy=velocity[1],
-            fx=drive.force[0],
-            fy=drive.force[1],
-            contacts=binner.lastContactNumber,
-            work=drive.work,
-        )
+        t = done * O.dt
+        if not state.pos[1] > 0:
+            raise RuntimeError(f"step {done}: the body fell through the base, to y = {state.pos[1]:.3g} d")
+        track.append(dict(t=t, y=state.pos[1]))
+        folder.append(t=t, contacts=binner.lastContactNumber, work=drive.work, **motion(state, drive))
+        if p.fields:
+            around.dead = t < SKIPPED * p.time
         if frames_due and done >= frames_due[0]:
             frames_due.pop(0)
-            folder.frame(t, *scene.picture(ids, base, stage["body"]))
+            folder.frame(t, *scene.picture(ids, [*base, *stage["lid"]], stage["body"]))
 
-    def save(place):
-        scene.save(place / CHECKPOINT)
-        np.save(place / "track.npy", track)
+    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
+    keep_rates(p, folder, **track.arrays())
+    if p.fields:
+        fields.write_fields(folder, "around", around, fields.GRAIN)
 
-    def after_block(done):
-        sample(first + done)
-        if checkpoints.due():
-            folder.checkpoint(save, first + done, **stage)
 
-    if not folder.resumed:
-        sample(0)
-    timing = progress.run_blocks(steps - first, block, after_block, grains=len(ids), label="shaking")
-    folder.note(steps=first + timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
-    t, y = np.array(track).T
-    rise = drift(t, y, p.period)
+def motion(state, drive):
+    """Return position, velocity and the force on the body as columns of the series."""
+    columns = dict(x=state.pos[0], y=state.pos[1], vx=state.vel[0], vy=state.vel[1])
+    return dict(**columns, fx=drive.force[0], fy=drive.force[1])
+
+
+def keep_rates(p, folder, t, y):
+    """Store V_y by the paper's rule, from a tenth of the run to arrest, with its error, and V_y by phase."""
+    rise = drift(t, y, p.period, skip=SKIPPED)
     folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)
     folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, y_final=y[-1] - y[0])
+    phases, rates, errors = phase_rates(t, y, p.period, rise.start, rise.end, PHASES)
+    folder.write("phase", dict(phase=(phases, "T"), vy=(rates, "sqrt(d g)"), vy_err=(errors, "sqrt(d g)")))
 
 
 def main(**defaults):

@@ -5,11 +5,11 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from . import cache, engines, progress, scene
+from . import cache, engines, lid, progress, scene
 from .errors import UsageError
 from .material import HertzHistoryMaterial
 
-RECIPE = 2  # raise it when a bed of the same parameters comes out different
+RECIPE = 3  # raise it when a bed of the same parameters comes out different
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
@@ -21,7 +21,7 @@ class BedRecipe:
 
     Lengths in grain diameters d, times in sqrt(d/g), masses in rho d^2. `beads` are rows x, y of the held clump's bead
     centres, `outline` rows x, y of its corners; both in the scene. `rest` is the kinetic energy per grain, in m g d, at
-    which the bed counts as settled.
+    which the bed counts as settled. `lid_pressure` [rho g d] is the weight over width of a `lid` on it, "rigid" or "grains".
     """
 
     width: float
@@ -36,10 +36,12 @@ class BedRecipe:
     dt: float
     rest: float
     seed: int
+    lid: str = "rigid"
+    lid_pressure: float = 0.0
 
 
 def settled_bed(recipe):
-    """Return a settled bed as a dict: x, y, r of its grains, shape (n,), kinetic energy per grain, deepest overlap.
+    """Return a settled bed as a dict: x, y, r and density of its grains, shape (n,), kinetic energy per grain, deepest overlap.
 
     The same recipe gives the same bed; it is taken from the cache when it is there.
     """
@@ -100,31 +102,55 @@ def distance_to(outline, points):
 
 
 def settle(recipe):
-    """Insert the grains and let them fall until they rest, on the fast loop; return the bed's arrays."""
+    """Insert the grains, let them fall until they rest, lay the lid on them and let them rest again; return the bed.
+
+    Under a rigid lid the bed also holds `lid_y`, the height of the lid's centres.
+    """
+    x, y, r = insert(recipe)
+    bed = come_to_rest(recipe, x, y, r, np.full(len(r), recipe.material.density))
+    if recipe.lid_pressure == 0:
+        return bed
+    if recipe.lid == "rigid":
+        top = float((bed["y"] + bed["r"]).max())
+        return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], bed["density"], lid_y=top + 0.5)
+    density = lid.heavy_layer(bed, recipe.width, recipe.lid_pressure, recipe.material.density, BED_FRACTION)
+    return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density)
+
+
+def come_to_rest(recipe, x, y, r, density, lid_y=None):
+    """Let grains fall until they rest, on the fast loop, under a rigid lid at `lid_y` if that is given; return the bed."""
     from yade import O
 
-    x, y, r = insert(recipe)
     scene.start(recipe.width, float(y.max()) + 2)
     scene.add_base(recipe.width, 1.0, recipe.material.density)
     beads = np.array(recipe.beads)
     scene.add_disks(
         beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ"
     )
-    ids = scene.add_disks(x, y, r, recipe.material.density)
+    ids = scene.add_disks(x, y, r, density)
+    rigid = None if lid_y is None else lid.add_rigid(recipe.width, lid_y, recipe.lid_pressure)
     scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=0.3)
     O.dt = recipe.dt
-    energy = run_until_at_rest(recipe, ids, fall_time=np.sqrt(2 * float(y.max())))
+    energy = run_until_at_rest(recipe, ids, density, fall_time=np.sqrt(2 * float(y.max())))
     bed = scene.rows_of(ids)
+    facts = dict(kinetic_energy=energy, deepest_overlap=deepest_overlap(recipe, bed))
+    if rigid is not None:
+        facts["lid_y"] = O.bodies[rigid].state.pos[1]
+    return {**{name: bed[name] for name in ("x", "y", "r")}, "density": density, **facts}
+
+
+def deepest_overlap(recipe, bed):
+    """Return the deepest overlap of a settled bed's grains [smaller radius]; RuntimeError if it is not one of grains at rest."""
     box = (0.0, recipe.width, -1.0, float(bed["y"].max()) + 1)
     deepest, i, j = engines.overlaps(box, True, np.c_[bed["x"] % recipe.width, bed["y"]], bed["r"])
     if deepest > 0.1:
         raise RuntimeError(
             f"grains {i} and {j} of the settled bed overlap by {deepest:.2g} of a radius; lower the time step"
         )
-    return {**{name: bed[name] for name in ("x", "y", "r")}, "kinetic_energy": energy, "deepest_overlap": deepest}
+    return deepest
 
 
-def run_until_at_rest(recipe, ids, fall_time):
+def run_until_at_rest(recipe, ids, density, fall_time):
     """Run in blocks of a time unit until the kinetic energy per grain is below `rest` m g d; return that energy.
 
     It is not asked before the highest grain could have fallen. A bed that does not come to rest in 50 times as long
@@ -139,7 +165,7 @@ def run_until_at_rest(recipe, ids, fall_time):
 
     def at_rest(done):
         nonlocal energy
-        energy = kinetic_energy_per_grain(scene.rows_of(ids), recipe.material.density)
+        energy = kinetic_energy_per_grain(scene.rows_of(ids), density)
         return energy < recipe.rest and done * O.dt > fall_time
 
     progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling (at most)")
@@ -149,7 +175,10 @@ def run_until_at_rest(recipe, ids, fall_time):
 
 
 def kinetic_energy_per_grain(grains, density):
-    """Return the mean kinetic energy, translation and rotation, over the mean m g d of the grains (g = d = 1)."""
+    """Return the mean kinetic energy, translation and rotation, over the mean m g d of the grains (g = d = 1).
+
+    `density` is one for all or of shape (n,).
+    """
     mass = density * np.pi * grains["r"] ** 2
     energy = mass / 2 * (grains["vx"] ** 2 + grains["vy"] ** 2 + grains["r"] ** 2 / 2 * grains["spin"] ** 2)
     return float(energy.mean() / mass.mean())

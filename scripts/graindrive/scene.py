@@ -39,10 +39,11 @@ def disk(x, y, radius, density, blocked=IN_PLANE):
 
 
 def add_disks(x, y, radii, density, blocked=IN_PLANE):
-    """Add disks and return their ids; arrays of shape (n,) in length, density in mass/length^2."""
+    """Add disks and return their ids; arrays of shape (n,) in length, density, one or (n,), in mass/length^2."""
     from yade import O
 
-    return O.bodies.append([disk(*row, density, blocked) for row in zip(x, y, radii)])
+    densities = np.broadcast_to(density, np.shape(x))
+    return O.bodies.append([disk(*row, blocked) for row in zip(x, y, radii, densities)])
 
 
 def row(width, diameter):

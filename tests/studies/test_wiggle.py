@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import engines, packing, progress
+from graindrive import intruder, packing, progress, recording
 from graindrive.errors import Interrupted
 from graindrive.material import HertzHistoryMaterial
 from graindrive.run_folder import RunFolder
@@ -103,7 +103,7 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
     with RunFolder(whole, study="wiggle") as folder:
         wiggle.run(whole, folder)
 
-    monkeypatch.setattr(wiggle, "CHECKPOINT_SECONDS", 0)  # one after every block
+    monkeypatch.setattr(recording, "CHECKPOINT_SECONDS", 0)  # one after every block
     advance, blocks = progress.advance, iter(range(7))
 
     def stop_in_the_seventh_block(steps):
@@ -129,10 +129,11 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
         assert np.abs(expected["y"] - found["y"]).max() < 1e-6
 
 
-def test_both_loops_go_the_same_way_until_chaos(wiggle, tmp_path):
+@pytest.mark.parametrize("pressure", [0, 20])
+def test_both_loops_go_the_same_way_until_chaos(wiggle, tmp_path, pressure):
     track = {}
     for loop in ("grain", "yade"):
-        p = tiny(wiggle, loop=loop, out=str(tmp_path / loop))
+        p = tiny(wiggle, loop=loop, lid_pressure=pressure, out=str(tmp_path / loop))
         with RunFolder(p, study="wiggle") as folder:
             wiggle.run(p, folder)
         track[loop] = series_of(tmp_path / loop)
@@ -182,19 +183,18 @@ def test_bad_input_is_one_line_exit_2_and_nothing_written(home, tmp_path, given,
 
 
 def bed_recipe(**changes):
-    clump = engines.clump_of(engines.outline_of("square", (3.0,)), 0.5, 9.0)
-    outline = np.array(engines.outline_of("square", (3.0,)).vertices)
-    at = np.array([6.0, 5.0])
+    body = intruder.make("square", orientation_deg=0, bead_diameter=0.5, bead_spacing=1, mass=9.0)
+    beads, outline = body.placed(np.array([10.0, 7.0]))
     values = dict(
-        width=12.0,
-        height=10.0,
+        width=20.0,
+        height=16.0,
         d_min=0.9,
         d_max=1.1,
         material=HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, 0.1, 1.0),
-        beads=tuple(map(tuple, clump.beads + at)),
-        bead_radius=clump.bead_radius,
-        outline=tuple(map(tuple, outline + at)),
-        outline_area=9.0,
+        beads=beads,
+        bead_radius=body.clump.bead_radius,
+        outline=outline,
+        outline_area=body.area,
         dt=5e-4,
         rest=1e-3,
         seed=1,
@@ -206,12 +206,12 @@ def test_a_bed_rests_around_the_held_body_without_deep_overlaps(monkeypatch, tmp
     monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path))
     bed = packing.settled_bed(bed_recipe())
     assert bed["kinetic_energy"] < 1e-3
-    # Hertz under the weight of ten layers: delta = (10/(K_n sqrt(R_eff)))^(2/3) ~ 5e-4 d; ten times that for the load on chains.
+    # Hertz under the weight of 16 layers: delta = (16/(K_n sqrt(R_eff)))^(2/3) ~ 6e-4 d; eight times that for the load on chains.
     assert bed["deepest_overlap"] < 5e-3 / 0.45
     beads = np.array(bed_recipe().beads)
     gap = np.hypot(bed["x"][:, None] - beads[:, 0], bed["y"][:, None] - beads[:, 1]) - bed["r"][:, None] - 0.25
     assert gap.min() > -5e-3
-    inside = (np.abs(bed["x"] - 6) < 1.2) & (np.abs(bed["y"] - 5) < 1.2)
+    inside = (np.abs(bed["x"] - 10) < 3) & (np.abs(bed["y"] - 7) < 3)
     assert not inside.any()
     assert bed["y"].min() > 0.5  # nothing fell through the base
 

@@ -148,13 +148,26 @@ def test_command_mistakes_are_one_line_and_exit_2(run_folder, extra, words, caps
 
 
 def test_command_names_the_studies_it_can_draw(tmp_path, capsys):
-    out = make(tmp_path / "run", study="magnus")
+    out = make(tmp_path / "run", study="drum")
     assert (
-        command.main([str(out)]) == 2
-        and "magnus, which has no figure yet; there are: wiggle" in capsys.readouterr().err
+        command.main([str(out)]) == 2 and "drum, which has no figure yet; there are: wiggle" in capsys.readouterr().err
     )
 
 
 def test_postproc_runs_as_a_module(run_folder):
     code = [sys.executable, "-m", "graindrive.postproc", str(run_folder)]
     assert subprocess.run(code, capture_output=True, timeout=60).returncode == 0
+
+
+def test_a_run_is_filmed_frame_by_frame(run_folder):
+    assert command.main([str(run_folder), "animation=1"]) == 0
+    probe = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0"]
+    counted = subprocess.run([*probe, str(run_folder / "animation.mp4")], capture_output=True, text=True, check=True)
+    assert int(counted.stdout.strip().strip(",")) == len(Run(run_folder).frame_names) == 2
+    assert not (run_folder / ".animation.mp4").exists()
+
+
+def test_a_run_of_one_frame_is_no_film(tmp_path, capsys):
+    out = make(tmp_path / "run", frames=1)
+    assert command.main([str(out), "animation=1"]) == 2
+    assert "holds 1 frames, a film needs more; run again with frames=200 or so" in capsys.readouterr().err

@@ -9,6 +9,7 @@ from graindrive.postproc.statistics import (
     chi_squared_99,
     cycle_means,
     drift,
+    phase_rates,
     ratio_mean,
     steady_start,
 )
@@ -162,3 +163,35 @@ def test_a_transient_is_left_out_and_noise_is_not():
 def test_a_drift_to_the_end_is_not_steady():
     noise = autoregressive(4000, 0.7, np.random.default_rng(5))
     assert not steady_start(noise + np.linspace(0, 20, 4000))[1]
+
+
+def test_rates_by_phase_are_the_velocity_of_a_known_motion():
+    t, period = np.linspace(0, 40, 1601), 4.0
+    y = 0.1 * t + 0.3 * np.sin(2 * np.pi * t / period)
+    phases, rates, errors = phase_rates(t, y, period, 3.9, 40)
+    edges = 2 * np.pi * np.arange(21) / 20
+    expected = 0.1 + 0.3 * np.diff(np.sin(edges)) * 20 / period
+    assert phases == pytest.approx((np.arange(20) + 0.5) / 20)
+    assert rates == pytest.approx(expected, abs=1e-9)  # every edge is a sample, so interpolation is exact
+    assert np.all(errors < 1e-9)
+    assert rates.mean() == pytest.approx(0.1, abs=1e-9)
+
+
+def test_errors_of_rates_by_phase_are_those_of_independent_cycles():
+    rng, cycles, parts = np.random.default_rng(4), 900, 40
+    steps = rng.normal(size=cycles * parts)
+    y = np.concatenate([[0], np.cumsum(steps)]) / parts
+    _, rates, errors = phase_rates(np.arange(cycles * parts + 1) / parts, y, 1.0, 0, cycles, parts)
+    # Now and then blocks of more than one cycle are taken, which scatter more; 40 errors of a tenth each give 2 %.
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(1 / 30, rel=0.1)
+    assert np.sqrt(np.mean(rates**2)) == pytest.approx(1 / 30, rel=0.4)  # 3 sigma of 40 values
+
+
+@pytest.mark.parametrize(
+    "start, end, known", [(0, 0.5, 0), (0.2, 1.9, 0), (np.nan, np.nan, 0), (0.2, 2.0, 1), (0.0, 1.0, 1)]
+)
+def test_only_whole_cycles_make_rates_by_phase(start, end, known):
+    t = np.linspace(0, 3, 61)
+    _, rates, errors = phase_rates(t, t, 1.0, start, end, parts=4)
+    assert np.all(np.isnan(errors))
+    assert rates == pytest.approx(1.0) if known else np.all(np.isnan(rates))

@@ -1,7 +1,4 @@
-"""The same scene in LIGGGHTS: Hertz with restitution damping, in the plane, with the moments of inertia of spheres.
-
-LIGGGHTS knows spheres only: every disk is a sphere of the disk's mass, on both sides of the comparison.
-"""
+"""The same scene in LIGGGHTS: Hertz with restitution damping; with `dimension 2` it weighs and turns disks, as we do."""
 
 import shutil
 
@@ -48,9 +45,9 @@ def available():
 
 
 def write(a_scene, folder):
-    """Write the data file: density such that a sphere has the disk's mass, rho pi r^2 = density 4/3 pi r^3."""
+    """Write the data file."""
     density, r = float(a_scene["density"]), a_scene["r"]
-    peer_files.write_data(a_scene, folder, lambda i: f"{2 * r[i]:.17g} {0.75 * density / r[i]:.17g}")
+    peer_files.write_data(a_scene, folder, lambda i: f"{2 * r[i]:.17g} {density:.17g}")
 
 
 def run(a_scene, folder, steps):

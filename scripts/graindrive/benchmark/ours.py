@@ -34,7 +34,7 @@ def bodies(a_scene):
     ):
         body = utils.sphere((x, y, 0), r, color=(1, 1, 1))
         mass = float(a_scene["density"]) * math.pi * r**2
-        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * (float(a_scene["inertia"]) * mass * r**2)
+        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * (mass * r**2 / 2)
         body.state.blockedDOFs = "zXY" if kind == FREE else "xyzXYZ"
         body.state.vel, body.state.angVel = Vector3(vx, vy, 0), Vector3(0, 0, spin)
         if kind == WALL and a_scene["drive"][2] and a_scene["period"] == 0:

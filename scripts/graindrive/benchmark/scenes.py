@@ -1,8 +1,7 @@
 """The scenes that are timed: disks, walls, what is driven, and the law, as one dict of arrays and numbers each.
 
 A scene has x, y, r, vx, vy, spin, kind of shape (n,) (kind: 0 free, 1 wall, 2 driven disk), velocities on the step, and
-law, constants, friction, gravity, dt, period (in x, 0 for none), drive (vx, vy, spin of the driven disk or of the drum), and
-inertia: I/(m R^2) of the grains, 1/2 for disks.
+law, constants, friction, gravity, dt, period (in x, 0 for none), drive (vx, vy, spin of the driven disk or of the drum).
 """
 
 import numpy as np
@@ -20,17 +19,17 @@ DRUM = dict(law="springDashpot", constants=(2e5, 2e5 * 2 / 7, 0.92), density=4 /
 def scene(name):
     """Return the scene of that name, from the cache or by making it."""
     made = cache.cached(f"bench-{name}", {"scene": name}, RECIPE, SCENES[name])
-    return dict(made, kind=made["kind"].astype(int), inertia=0.5)
+    return dict(made, kind=made["kind"].astype(int))
 
 
 def with_restitution(a_scene):
-    """Return a bed under the Hertz law with restitution damping, as stiff as before, its disks turning like spheres.
+    """Return a bed under the Hertz law with restitution damping, as stiff as before.
 
     K_n = 4/3 E_eff, E_eff = E / (2 (1 - nu^2)); nu = 0.3 gives the wiggle study's K_t / K_n = 1.23.
     """
     poisson = 0.3
     young = 1.5 * float(a_scene["constants"][0]) * (1 - poisson**2)
-    return dict(a_scene, law="hertzRestitution", constants=(young, poisson, 0.5), inertia=0.4)
+    return dict(a_scene, law="hertzRestitution", constants=(young, poisson, 0.5))
 
 
 def together(parts, **numbers):

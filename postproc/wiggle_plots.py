@@ -1,0 +1,197 @@
+"""The figures of a wiggle campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
+
+import numpy as np
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.patches import Polygon
+
+from . import figures
+from . import wiggle_runs as runs
+from .figures import BLACK, GREY, VERMILLION
+from .magnus_plots import COLOURS, MARKERS, canvas, draw_points, share_y
+from .magnus_runs import curve, quantity
+from .wiggle_claims import OBSERVED, TABLE_1_AMPLITUDE, scenes_of
+from .wiggle_runs import RATE, by_shape, title
+
+RATE_LABEL = r"$V_y$  [$\sqrt{gd}$]"
+PERIOD_LABEL = r"$T$  [$\sqrt{d/g}$]"
+
+
+def panels(groups, claims, *, height=1.9, columns=3):
+    """Return (figure, one axes per group, in rows of `columns`) with room for the claims."""
+    columns = min(columns, len(groups))
+    lines = -(-len(groups) // columns)
+    figure, axes = canvas(lines, columns, claims, width=2 * figures.COLUMN_WIDTH, height=height * lines)
+    for spare in axes.ravel()[len(groups) :]:
+        spare.set_axis_off()
+    return figure, axes.ravel()[: len(groups)]
+
+
+def look(k, label):
+    """Return colour, marker and label of the k-th curve of a panel."""
+    return dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], label=label)
+
+
+def against_period(campaign, rows, claims):
+    """Fig. 5: V_y against T, a panel for each shape, a line for each amplitude, with the cavity model."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (amplitude, of_one) in enumerate(group.groupby("amplitude", sort=True)):
+            draw_points(panel, *runs.rates(of_one), **look(k, f"A = {amplitude:g} d"))
+        name_panel(panel, shape, PERIOD_LABEL)
+    share_y(axes)
+    for panel, (shape, group) in zip(axes, groups):  # last, in the range of the data, which it leaves
+        draw_model(panel, runs.model_of(group), group["period"].max())
+    axes[0].legend(handlelength=1.2)
+    return figure
+
+
+def draw_model(panel, model, longest):
+    """Draw V_y of the cavity model, Eq. 3.17, and a line at its T_rise."""
+    periods, (low, high) = np.linspace(0.05, longest, 400), panel.get_ylim()
+    panel.plot(periods, model.rise_rate(periods), "--", color=BLACK, linewidth=0.7, label="cavity model")
+    panel.axvline(model.first_rising_period, color=GREY, linewidth=0.5, linestyle=":")
+    panel.set_ylim(low, high + 0.3 * (high - low))
+
+
+def first_periods(campaign, rows, claims):
+    """Table 1: the first rising period of each shape, measured, as the paper saw it (bars), and by the cavity model."""
+    figure, ((axes,),) = canvas(1, 1, claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
+    groups = list(by_shape(rows[rows["amplitude"] == TABLE_1_AMPLITUDE]))
+    places = np.arange(len(groups))
+    for place, (shape, _) in zip(places, groups):
+        if shape in OBSERVED:
+            axes.plot([place, place], OBSERVED[shape], color=GREY, linewidth=7, solid_capstyle="butt", zorder=1)
+    model = [runs.model_of(group).first_rising_period for _, group in groups]
+    axes.plot(places, model, "_", color=VERMILLION, markersize=16, label="cavity model, Eq. 3.14")
+    found = [runs.first_rising_period(group) for _, group in groups]
+    draw_points(axes, places, found, fmt="o", color=BLACK, label="measured")
+    axes.plot([], [], color=GREY, linewidth=7, label="observed in the paper")
+    axes.set_xticks(places, [title(shape).replace(", ", "\n") for shape, _ in groups])
+    axes.set(ylabel=f"first rising {PERIOD_LABEL}", xlim=(-0.6, len(groups) - 0.4), ylim=(0, None))
+    axes.legend(loc="lower right")
+    return figure
+
+
+def name_panel(panel, shape, xlabel):
+    """Set title, labels and a line at zero."""
+    panel.axhline(0, color=GREY, linewidth=0.5, zorder=0)
+    panel.set(title=title(shape), xlabel=xlabel, ylabel=RATE_LABEL)
+
+
+def colour_map(campaign, rows, claims):
+    """Fig. 14: V_y over (T, A), a panel for each shape, one scale of colours for all."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims)
+    largest = max(np.nanmax(np.abs(rows[RATE].astype(float))), 1e-12)
+    for panel, (shape, group) in zip(axes, groups):
+        table = group.assign(rate=group[RATE].astype(float)).pivot_table(
+            index="amplitude", columns="period", values="rate"
+        )
+        norm = TwoSlopeNorm(0, -largest, largest)
+        places = np.arange(table.shape[1]), np.arange(table.shape[0])
+        image = panel.pcolormesh(*places, table.to_numpy(), cmap="RdBu_r", norm=norm, shading="nearest")
+        panel.set_facecolor(GREY)  # not measured
+        panel.set_xticks(places[0], [f"{t:g}" for t in table.columns])
+        panel.set_yticks(places[1], [f"{a:g}" for a in table.index])
+        panel.set(title=title(shape), xlabel=PERIOD_LABEL, ylabel="$A$  [$d$]")
+    figure.colorbar(image, ax=list(axes), label=RATE_LABEL, shrink=0.8)
+    return figure
+
+
+def against_friction(campaign, rows, claims):
+    """Fig. 6: V_y against mu, a panel for each shape, a line for each period."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
+            draw_points(panel, *curve(of_one, "mu", RATE), **look(k, f"T = {period:g}"))
+        name_panel(panel, shape, "friction coefficient μ")
+    share_y(axes)
+    axes[0].legend()
+    return figure
+
+
+def against_phase(campaign, rows, claims):
+    """Fig. 8: V_y by phase, a panel for each shape, a line for each period."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
+            phases, points = runs.phase_curve(campaign, of_one)
+            draw_points(panel, 20 * phases, points, **look(k, f"T = {period:g}"))
+        for turn in (5, 15):
+            panel.axvline(turn, color=GREY, linewidth=0.5, linestyle=":")
+        name_panel(panel, shape, "phase 10φ/π")
+    axes[0].legend()
+    return figure
+
+
+def heights(campaign, rows, claims):
+    """Fig. 2: y(t) by means over cycles, a panel for each shape, a line for each period; the first repeat."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
+            series = campaign.run(of_one["run"].iloc[0]).series
+            panel.plot(series["t"], series["y"] - series["y"][0], color=COLOURS[k % 6], label=f"T = {period:g}")
+        name_panel(panel, shape, r"$t$  [$\sqrt{d/g}$]")
+        panel.set_ylabel("$y - y_0$  [$d$]")
+    axes[0].legend()
+    return figure
+
+
+def of_drives(campaign, rows, claims):
+    """V_y against T for both readings of the drive, a panel for each shape."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims, height=2.4)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (form, of_one) in enumerate(group.groupby("drive", sort=True)):
+            draw_points(panel, *runs.rates(of_one), **look(k, f"A is of the {form}"))
+        name_panel(panel, shape, PERIOD_LABEL)
+    axes[0].legend()
+    return figure
+
+
+def of_scenes(campaign, rows, claims):
+    """V_y of each scene, a panel for each period."""
+    groups = list(rows.groupby("period", sort=True))
+    figure, axes = panels(groups, claims, height=0.8 + 0.2 * len(scenes_of(rows)), columns=2)
+    for panel, (period, group) in zip(axes, groups):
+        scenes = scenes_of(group)
+        found = [quantity(scene, RATE) for _, scene in scenes]
+        places = -np.arange(len(scenes))
+        panel.errorbar(
+            [m.value for m in found], places, xerr=[m.error for m in found], fmt="o", markersize=3, color=BLACK
+        )
+        panel.axvspan(
+            found[0].value - found[0].error, found[0].value + found[0].error, color=GREY, alpha=0.4, linewidth=0
+        )
+        panel.set_yticks(places, [name for name, _ in scenes] if panel is axes[0] else [""] * len(scenes))
+        panel.set(title=f"T = {period:g}", xlabel=RATE_LABEL, ylim=(0.6 - len(scenes), 0.6))
+        panel.locator_params(axis="x", nbins=4)
+    return figure
+
+
+def around_body(campaign, rows, claims):
+    """Figs. 9 to 11: area fraction, speed and pressure around the body by phase, rows of panels for each shape."""
+    groups, phases = list(by_shape(rows)), (0, 5, 10, 15, 19)
+    names = (("area_fraction", "Greys"), ("speed", "viridis"), ("pressure", "inferno"))
+    height = 1.35 * 3 * len(groups)
+    figure, axes = canvas(3 * len(groups), len(phases), claims, width=2 * figures.COLUMN_WIDTH, height=height)
+    for block, (shape, group) in enumerate(groups):
+        seen = runs.field_runs(campaign, group)[0]
+        outline = campaign.run(group["run"].iloc[0]).group("intruder")["outline"]
+        for line, (name, colours) in zip(axes[3 * block : 3 * block + 3], names):
+            maps = [seen.map(name, min(k, len(seen.samples) - 1)) for k in phases]
+            top = np.nanquantile(maps, 0.995)
+            for panel, k, values in zip(line, phases, maps):
+                image = panel.pcolormesh(seen.x, seen.y, values, cmap=colours, vmin=0, vmax=top, rasterized=True)
+                panel.add_patch(Polygon(outline, facecolor="white", edgecolor=BLACK, linewidth=0.8))
+                panel.set(aspect="equal", xticks=[-10, 0, 10], yticks=[-10, 0, 10])
+                panel.label_outer()
+            line[0].set_ylabel(f"{title(shape)}\n{name.replace('_', ' ')}" if name == names[0][0] else name)
+            figure.colorbar(image, ax=list(line), shrink=0.8)
+    for panel, k in zip(axes[0], phases):
+        panel.set_title(f"10φ/π = {k}")
+    return figure

@@ -1,0 +1,100 @@
+"""What the report of a wiggle campaign takes from its runs: rise rates over periods, zeros of curves, rates by phase, fields."""
+
+import numpy as np
+
+from . import fields
+from .cavity_model import CavityModel
+from .magnus_runs import at, curve
+from .measured import UNKNOWN, Measured, mean_of
+
+SHAPES = ("disk", "square", "tall", "wide", "triangle")  # OS1 to OS5
+TITLES = dict(zip(SHAPES, ("disk, OS1", "square, OS2", "tall rectangle, OS3", "wide rectangle, OS4", "triangle, OS5")))
+RATE = "rise_rate"
+
+
+def by_shape(rows):
+    """Yield (shape, its rows): the paper's five in their order, then others by name."""
+    found = list(dict.fromkeys(rows["shape"]))
+    for shape in sorted(found, key=lambda s: (SHAPES.index(s) if s in SHAPES else len(SHAPES), s)):
+        yield shape, rows[rows["shape"] == shape]
+
+
+def of_shape(rows, shape, **keys):
+    """Return the rows of one shape whose other keys have these values."""
+    return at(rows[rows["shape"] == shape], **keys)
+
+
+def title(shape):
+    """Return a shape's name with the paper's number."""
+    return TITLES.get(shape, shape)
+
+
+def rates(rows):
+    """Return (periods, rise rates as `Measured`) of rows that differ in period and seed only."""
+    return curve(rows, "period", RATE) if len(rows) else (np.zeros(0), [])
+
+
+def fastest_rise(rows):
+    """Return the largest rise rate over the periods, UNKNOWN without runs."""
+    return max(rates(rows)[1], key=lambda m: m.value, default=UNKNOWN)
+
+
+def largest_motion(rows):
+    """Return the rise rate of largest size over the periods, without its sign; UNKNOWN without runs."""
+    found = max(rates(rows)[1], key=lambda m: abs(m.value), default=UNKNOWN)
+    return Measured(abs(found.value), found.error)
+
+
+def first_rising_period(rows):
+    """Return the period at which the rise rate turns positive on the way to its maximum, as `Measured`.
+
+    Linear between the two periods about the zero; the error is that of the two rates. UNKNOWN where the body rises at
+    all periods below the maximum, or never rises.
+    """
+    periods, points = rates(rows)
+    values = np.array([m.value for m in points])
+    if not len(values) or not values.max() > 0:
+        return UNKNOWN
+    best = int(values.argmax())
+    below = np.flatnonzero(values[:best] <= 0)
+    if not len(below):
+        return UNKNOWN
+    k = int(below[-1])
+    return zero_between(periods[k], points[k], periods[k + 1], points[k + 1])
+
+
+def zero_between(x_low, low, x_high, high):
+    """Return the zero of the line through two `Measured` points at exact x, low <= 0 < high, as `Measured`."""
+    rise, step = high.value - low.value, x_high - x_low
+    error = step * np.hypot(high.value * low.error, low.value * high.error) / rise**2
+    return Measured(float(x_low - low.value * step / rise), float(error))
+
+
+def model_of(rows):
+    """Return the cavity model of the body of these rows (one shape)."""
+    first = rows.iloc[0]
+    return CavityModel(float(first["fall_height"]), float(first["intruder_height"]))
+
+
+# ---- by phase --------------------------------------------------------------------------------------------------------
+
+
+def phase_curve(campaign, rows):
+    """Return (phases (parts,), rise rates by phase over repeats, a list of `Measured`)."""
+    groups = [campaign.run(name).group("phase") for name in rows["run"]]
+    columns = zip(*(zip(g["vy"], g["vy_err"]) for g in groups))
+    return groups[0]["phase"], [mean_of([Measured(float(v), float(e)) for v, e in column]) for column in columns]
+
+
+def mean_over(points):
+    """Return the mean of `Measured` parts of a cycle; their errors are taken as independent."""
+    values, errors = np.array([(m.value, m.error) for m in points]).T
+    return Measured(float(values.mean()), float(np.sqrt(np.sum(errors**2)) / len(points)))
+
+
+# ---- fields ----------------------------------------------------------------------------------------------------------
+
+
+def field_runs(campaign, rows):
+    """Return the `Fields` of all repeats."""
+    return [fields.read(campaign.run(name), "around") for name in rows["run"]]
