@@ -14,6 +14,7 @@ UNITS = dict(
     x="m",
     fx="N",
     fy="N",
+    normal_x="N",
     torque="N m",
     contacts="-",
     slipping="-",
@@ -82,11 +83,13 @@ def angles_of(bins):
 
 
 def shares(kept, drag):
-    """Return the means of kappa (Eq. 14) and of the contacts' share in |theta| < pi/2."""
+    """Return the means of kappa = sum F_N cos(theta)/D (Eq. 14) and of the contacts' share in |theta| < pi/2.
+
+    The sum is the drag of the normal forces, contact by contact: with bins' middle angles it comes out 1 % too small.
+    """
     theta = angles_of(kept["normal"].shape[1])
     front = kept["contacts_by_angle"][:, np.abs(theta) < np.pi / 2].sum(axis=1)
-    pressing = magnus_model.kappa(theta, kept["normal"], 1.0)
-    return dict(kappa=ratio_mean(pressing, drag), front_share=ratio_mean(front, kept["contacts"]))
+    return dict(kappa=ratio_mean(-kept["normal_x"], drag), front_share=ratio_mean(front, kept["contacts"]))
 
 
 def fluctuations(kept):

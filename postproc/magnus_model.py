@@ -11,17 +11,7 @@ def symmetric_lift_to_drag(mu):
     return mu
 
 
-def kappa(angles, normal_force, drag):
-    """Return kappa = sum F_N cos(theta)/D (Eq. 14) [-] from mean normal forces [N] in equal bins around the body.
-
-    angles (bins,) are the bins' centres [rad]; normal_force (..., bins); drag (...) [N]. The cosine is the mean over a bin,
-    cos(theta_m) sin(w/2)/(w/2) for bins of width w, which is exact for forces spread evenly in each bin.
-    """
-    half = np.pi / len(angles)
-    return np.asarray(normal_force) @ (np.cos(angles) * np.sin(half) / half) / drag
-
-
 def saturated_lift_to_drag(kappa, mu):
-    """Return L/D = kappa mu - (1 - kappa)/mu (Eq. 15) [-]; 0 without friction, where kappa is 1 and there is no lift."""
+    """Return L/D = kappa mu - (1 - kappa)/mu (Eq. 15) [-], kappa = sum F_N cos(theta)/D (Eq. 14); 0 without friction, where kappa is 1 and there is no lift."""
     mu, kappa = np.asarray(mu, float), np.asarray(kappa, float)
     return np.where(mu > 0, kappa * mu - (1 - kappa) / np.where(mu > 0, mu, 1), 0.0)[()]

@@ -81,6 +81,7 @@ void ContactForceBinner::add(const BodyContact& contact, const Vector3r& e1, con
 	for (int k = 0; k < 3; ++k) {
 		sample_[total_slot(total_force + k)] += force[k];
 		sample_[total_slot(total_torque + k)] += torque[k];
+		sample_[total_slot(total_normal + k)] += contact.normal_force[k];
 	}
 	sample_[total_slot(total_contacts)] += 1;
 	sample_[total_slot(total_slipping)] += contact.slipping;

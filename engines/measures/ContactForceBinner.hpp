@@ -14,8 +14,8 @@ public:
 	static const char* const documentation;
 	/// What is kept of every bin.
 	enum Channel { normal, tangential, contacts, slipping, force_x, force_y, force_z, channels };
-	/// What is kept of the whole body, behind the bins: force, torque, contacts, slipping contacts.
-	enum Total { total_force = 0, total_torque = 3, total_contacts = 6, total_slipping = 7, totals };
+	/// What is kept of the whole body, behind the bins: force, torque, contacts, slipping contacts, the normal forces' share in the force.
+	enum Total { total_force = 0, total_torque = 3, total_contacts = 6, total_slipping = 7, total_normal = 8, totals = 11 };
 
 	template <class Visit>
 	static void attributes(Visit&& visit)

@@ -166,6 +166,19 @@ def surround(body_at, count):
         O.bodies[i].state.vel = (0.3 * math.sin(5 * angle), 0.2, 0)
 
 
+def test_normal_forces_on_the_body_are_all_of_the_force_without_friction_and_across_the_slip_with_it():
+    for friction in (0.0, 0.5):
+        body = disk(0, 0, frozen=True)
+        wall = disk(0.9, 0, frozen=True)
+        O.bodies[wall].state.vel = (0, 0.3, 0)  # slides along the contact, so only friction acts along y
+        binner = binner_on(body)
+        measured(binner, friction=friction, law=hertz(leverArm="contactPoint"), steps=1)
+        normal, force = np.array(binner.normalForceOnBody), np.array(binner.force)
+        assert normal[0] < 0 and normal[1] == 0 and normal[0] == force[0]
+        assert (force[1] > 0) == (friction > 0)
+        O.reset()
+
+
 @pytest.mark.parametrize("kernel", KERNELS)
 @pytest.mark.parametrize("count", [1, 3, 8, 11])
 def test_bins_sum_to_the_force_that_yade_holds(kernel, count):

@@ -86,6 +86,7 @@ void bind_measures()
 	cls.add_property("forceVectors", force_vectors<false>, "mean force [N], shape (bins, 3)");
 	cls.add_property("forceVectorsVariance", force_vectors<true>, "its variance over samples [N^2], shape (bins, 3)");
 	cls.add_property("force", of_body<Binner::total_force, false>, "mean force on the body [N]");
+	cls.add_property("normalForceOnBody", of_body<Binner::total_normal, false>, "mean sum of the normal forces on the body [N]");
 	cls.add_property("forceVariance", of_body<Binner::total_force, true>, "its variance over samples [N^2]");
 	cls.add_property("torque", of_body<Binner::total_torque, false>, "mean torque about the body's centre [N m]");
 	cls.add_property("torqueVariance", of_body<Binner::total_torque, true>, "its variance over samples [N^2 m^2]");

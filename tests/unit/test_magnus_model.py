@@ -9,26 +9,26 @@ THETA = (np.arange(24) + 0.5) * np.pi / 12 - np.pi
 
 
 def slipping(normal, mu):
-    """Drag and lift of contacts that all slip clockwise, forces spread evenly in each bin (Eqs 10, 11)."""
+    """Drag, lift and the normal forces' drag of contacts that all slip clockwise, spread evenly in each bin (Eqs 10, 11)."""
     edges = THETA - np.pi / 24, THETA + np.pi / 24
     cosine = (np.sin(edges[1]) - np.sin(edges[0])) * 12 / np.pi
     sine = -(np.cos(edges[1]) - np.cos(edges[0])) * 12 / np.pi
-    return normal @ (cosine - mu * sine), normal @ (sine + mu * cosine)
+    return normal @ (cosine - mu * sine), normal @ (sine + mu * cosine), normal @ cosine
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.5, 1.2])
 def test_equations_14_and_15_give_the_lift_of_any_distribution_that_slips(mu):
     normal = np.random.default_rng(1).uniform(0, 1, 24) * (np.abs(THETA) < np.pi / 2) * (1.5 - np.sign(THETA))
-    drag, lift = slipping(normal, mu)
-    kappa = magnus_model.kappa(THETA, normal, drag)
+    drag, lift, pressing = slipping(normal, mu)
+    kappa = pressing / drag
     assert kappa < 1
     assert magnus_model.saturated_lift_to_drag(kappa, mu) == pytest.approx(lift / drag, rel=1e-12)
 
 
 def test_a_symmetric_distribution_gives_mu():
     normal = np.cos(THETA) * (np.abs(THETA) < np.pi / 2)
-    drag, lift = slipping(normal, 0.5)
-    assert magnus_model.kappa(THETA, normal, drag) == pytest.approx(1, rel=1e-12)
+    drag, lift, pressing = slipping(normal, 0.5)
+    assert pressing / drag == pytest.approx(1, rel=1e-12)
     assert lift / drag == pytest.approx(magnus_model.symmetric_lift_to_drag(0.5), rel=1e-12)
 
 
@@ -43,10 +43,11 @@ def series(n, mu=0.5, seed=2):
     rng = np.random.default_rng(seed)
     shape = (1 - 0.3 * np.sin(THETA)) * np.cos(THETA) * (np.abs(THETA) < np.pi / 2)
     normal = rng.exponential(1.0, (n, 1)) * shape * rng.uniform(0.5, 1.5, (n, 24))
-    drag, lift = np.array([slipping(row, mu) for row in normal]).T
+    drag, lift, pressing = np.array([slipping(row, mu) for row in normal]).T
     touching = (normal > 0).astype(float)
     zeros = np.zeros(n)
     found = dict(t=np.arange(n) + 1.0, travel=0.1 * (np.arange(n) + 1), x=zeros, fx=-drag, fy=-lift, torque=zeros)
+    found.update(normal_x=-pressing)
     found.update(contacts=touching.sum(axis=1), slipping=touching.sum(axis=1), contacts_var=zeros)
     found.update(fx_var=zeros + 4.0, fy_var=zeros)
     return {

@@ -145,18 +145,18 @@ def against_yade(name, a_scene, path, rounds, steps):
     return row(name, a_scene, 1, "YADE's loop", ours, theirs)
 
 
-def against_double(name, a_scene, path, rounds, steps):
-    """Return the row of single against double precision."""
-    single, double = Ours(path, "grain", precision="single"), Ours(path, "grain")
+def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="double", **settings):
+    """Return the row of GrainLoop with other `settings` against GrainLoop as it is."""
+    other, plain = Ours(path, "grain", precision=precision, **settings), Ours(path, "grain")
     particles = len(a_scene["x"])
     try:
         pairs = [
-            (rate(single.run(steps), particles, steps, 1), rate(double.run(steps), particles, steps, 1))
+            (rate(other.run(steps), particles, steps, 1), rate(plain.run(steps), particles, steps, 1))
             for _ in range(rounds)
         ]
     finally:
-        single.close(), double.close()
-    return row(name, a_scene, 1, "own double", *zip(*pairs), precision="single")
+        other.close(), plain.close()
+    return row(name, a_scene, 1, peer, *zip(*pairs), precision=precision)
 
 
 def against_small_bed(name, a_scene, path, rounds, steps, folder):
@@ -195,8 +195,10 @@ def measure(name, quick, threads):
         yield from against_lammps(name, a_scene, path, folder, threads, rounds, steps)
         if name == "bed10k":
             yield from against_liggghts(name, a_scene, folder, rounds, steps)
-            yield against_double(name, a_scene, path, rounds, 2 * steps)
+            yield against_ourselves(name, a_scene, path, rounds, 2 * steps, "own double", precision="single")
             yield against_yade(name, a_scene, path, 3, 2 * steps)
+        if name == "magnus_dilute":  # forces by angle sampled at every step
+            yield against_ourselves(name, a_scene, path, 3 * rounds, steps, "own, not binned", binned=True)
         if name == "wiggle63k":
             yield against_small_bed(name, a_scene, path, rounds, steps, folder)
 

@@ -125,12 +125,15 @@ def serve(path, which, settings):
     with np.load(path) as file:
         a_scene = {name: file[name] for name in file.files}
     bodies(a_scene)
-    begins_on_step = settings.pop("onStep", True)
+    begins_on_step, binned = settings.pop("onStep", True), settings.pop("binned", False)
     loop = grain_loop(a_scene, **settings) if which == "grain" else None
     if loop is None:
         yade_loop(a_scene)
     elif begins_on_step:
         loop.beginOnStep()
+    if binned:
+        driven = int(np.flatnonzero(a_scene["kind"] == DRIVEN)[0])  # every disk is a body, in the scene's order
+        O.engines = [engines.ContactForceBinner(body=driven), loop]
     for line in sys.stdin:
         steps = int(line)
         wall, cpu = time.perf_counter(), time.process_time()
