@@ -70,8 +70,9 @@ def run_sampled(folder, steps, block, sample, *, track, stage, grains, label):
 def block_means(binner):
     """Return the means of a ContactForceBinner since it was last cleared, as a dict, and clear it.
 
-    fx, fy, normal_x (of the normal forces alone) [N], torque [N m], contacts, slipping; variances of the instantaneous values within the block, fx_var, fy_var
-    [N^2], contacts_var; by angle, shape (bins,): normal, tangential [N], contacts_by_angle, slipping_by_angle.
+    fx, fy, normal_x (of the normal forces alone) [N], torque [N m], contacts, slipping; variances of the instantaneous
+    values within the block, fx_var, fy_var [N^2], contacts_var; by angle, shape (bins,): normal, tangential [N],
+    contacts_by_angle, slipping_by_angle.
     """
     force, variance = binner.force, binner.forceVariance
     row = dict(
