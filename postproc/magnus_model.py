@@ -12,6 +12,9 @@ def symmetric_lift_to_drag(mu):
 
 
 def saturated_lift_to_drag(kappa, mu):
-    """Return L/D = kappa mu - (1 - kappa)/mu (Eq. 15) [-], kappa = sum F_N cos(theta)/D (Eq. 14); 0 without friction, where kappa is 1 and there is no lift."""
+    """Return L/D = kappa mu - (1 - kappa)/mu (Eq. 15) [-] from kappa = sum F_N cos(theta)/D (Eq. 14).
+
+    It is 0 without friction, where kappa is 1 and there is no lift.
+    """
     mu, kappa = np.asarray(mu, float), np.asarray(kappa, float)
     return np.where(mu > 0, kappa * mu - (1 - kappa) / np.where(mu > 0, mu, 1), 0.0)[()]
