@@ -11,11 +11,14 @@ from graindrive.errors import Interrupted
 
 @pytest.mark.parametrize("number", signals.STOP_SIGNALS)
 def test_a_signal_raises_at_once_and_handlers_come_back(number):
-    before = signal.getsignal(number)
-    with pytest.raises(Interrupted) as caught, signals.handled():
-        os.kill(os.getpid(), number)
-        pytest.fail("the line after the signal was reached")
-    assert caught.value.exit_code == 128 + number and signal.getsignal(number) is before
+    inherited = signal.signal(number, signal.SIG_DFL)  # nohup and jobs in the background begin with some ignored
+    try:
+        with pytest.raises(Interrupted) as caught, signals.handled():
+            os.kill(os.getpid(), number)
+            pytest.fail("the line after the signal was reached")
+        assert caught.value.exit_code == 128 + number and signal.getsignal(number) is signal.SIG_DFL
+    finally:
+        signal.signal(number, inherited)
 
 
 def test_a_protected_block_ends_before_the_signal_takes_effect():
