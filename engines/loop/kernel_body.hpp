@@ -19,8 +19,8 @@ struct PackForces {
 };
 
 /// One pack of pairs: columns of row differences and sums -> forces on the owners. Flowing scenes list many pairs that do not
-/// touch; a pack without a touching one costs half.
-template <class Law, class S>
+/// touch; a pack without a touching one costs half. Without friction the compiler drops all that only the tangential force needs.
+template <bool Friction, class Law, class S>
 inline PackForces<S> pack_forces(
 	const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
 {
@@ -42,7 +42,9 @@ inline PackForces<S> pack_forces(
 	contact.dt = dt;
 
 	const auto response = law(contact, slip);
-	const S normal = select(touching, response.normal, zero), friction = select(touching, response.tangential, zero);
+	const S normal = select(touching, response.normal, zero);
+	if constexpr (!Friction) return { -(normal * n_x), -(normal * n_y), zero, normal, zero };
+	const S friction = select(touching, response.tangential, zero);
 	return { -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal,
 		select(touching, response.slip, zero) };
 }
@@ -109,9 +111,9 @@ private:
 		P* slips = static_cast<P*>(data.slips) + at;
 		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at),
 				mass = S::load(static_cast<const P*>(data.effective_masses) + at);
-		PackForces<S> f = pack_forces(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
+		PackForces<S> f = pack_forces<Friction>(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
 		if constexpr (Friction) f.slip.store(slips);
-		Turn::store(f.x, f.y, Friction ? f.friction : S(P(0)), f.normal, static_cast<PairForce<P>*>(data.forces) + at);
+		Turn::store(f.x, f.y, f.friction, f.normal, static_cast<PairForce<P>*>(data.forces) + at);
 	}
 
 	static void fold(const KernelData& data, std::uint32_t block)

@@ -51,7 +51,7 @@ public:
 			Grain& g = s.grains[i];
 			if (g.body != free_grain) continue;
 			g.vx += (fx[i] / g.mass + s.gravity_x) * s.dt, g.vy += (fy[i] / g.mass + s.gravity_y) * s.dt;
-			g.spin += torque[i] / (g.mass * g.radius * g.radius / 2) * s.dt;
+			if (s.rotation) g.spin += torque[i] / (g.mass * g.radius * g.radius / 2) * s.dt;
 			g.x += g.vx * s.dt, g.y += g.vy * s.dt;
 		}
 	}
@@ -83,6 +83,7 @@ private:
 		const auto answer = std::visit(
 			[&](const auto& law) -> std::array<double, 3> {
 				const auto response = law(contact, slip);
+				if (!s.friction) return { response.normal, 0, 0 };
 				return { response.normal, response.tangential, response.slip };
 			},
 			s.law);
