@@ -36,8 +36,8 @@ from graindrive import bodies, channel, engines, fields, headless, intruder, rec
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
-from graindrive.postproc import magnus as results  # noqa: E402
-from graindrive.postproc.magnus_forces import UNITS, steady_state  # noqa: E402
+from graindrive.postproc.magnus import figure  # noqa: E402
+from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -278,7 +278,7 @@ def record(p, folder, stage):
 
 def main(**defaults):
     """Entry of this study and of presets, which give `defaults`."""
-    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=results.draw)
+    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":

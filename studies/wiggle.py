@@ -45,8 +45,8 @@ from graindrive import engines, fields, headless, intruder, lid, packing, progre
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
-from graindrive.postproc import wiggle as results  # noqa: E402
 from graindrive.postproc.statistics import drift, phase_rates  # noqa: E402
+from graindrive.postproc.wiggle import figure  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -272,7 +272,7 @@ def keep_rates(p, folder, t, y):
 
 def main(**defaults):
     """Entry of this study and of its presets, which give `defaults`."""
-    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=results.draw)
+    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":
