@@ -2,8 +2,10 @@
 
 import sys
 
-from . import animation, magnus, wiggle
+from .magnus import figure as magnus
 from .reader import Run, RunError
+from .wiggle import animation
+from .wiggle import figure as wiggle
 
 FIGURES = {"wiggle": wiggle.draw, "magnus": magnus.draw}
 KEYS = ("frame=", "animation=")

@@ -32,12 +32,12 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import bodies, channel, engines, fields, headless, intruder, recording, scene  # noqa: E402
+from graindrive import channel, engines, fields, headless, intruder, recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import StudyParameters, quantity  # noqa: E402
-from graindrive.postproc import magnus as results  # noqa: E402
-from graindrive.postproc.magnus_forces import UNITS, steady_state  # noqa: E402
+from graindrive.parameters import quantity  # noqa: E402
+from graindrive.postproc.magnus import figure  # noqa: E402
+from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -54,7 +54,7 @@ FIELD_REACH = 10  # d around the body, half as much again behind it
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 
 
-class MagnusParameters(StudyParameters):
+class MagnusParameters(intruder.BodyParameters):
     """What the Magnus study knows; lengths in d = 0.02 m, all else SI."""
 
     phi: float = quantity(0.352, "-", "area fraction of the grains", ge=0.05, le=0.9)
@@ -75,11 +75,6 @@ class MagnusParameters(StudyParameters):
     field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
     frames: int = quantity(1, "-", "pictures of the channel that are kept, the last at the end", ge=1, le=9999)
     largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
-
-    def identity(self):
-        """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
-        outline = {"outline": intruder.contents_of(self.shape)} if intruder.names_a_file(self.shape) else {}
-        return {**super().identity(), **outline}
 
     @property
     def way(self):
@@ -116,20 +111,12 @@ def check_room(p):
         raise UsageError(
             f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d; raise travel and width"
         )
-    if abs(1 / p.field_spacing - round(1 / p.field_spacing)) > 1e-9:
-        raise UsageError(
-            f"field_spacing={p.field_spacing:g} d must divide 1 d; take 1/{max(1, round(1 / p.field_spacing))}"
-        )
-    if min(p.width, p.height) < 2 * p.intruder_diameter + 4:
-        raise UsageError(
-            f"a channel of {p.width:g} d x {p.height:g} d is too small for a body of {p.intruder_diameter:g} d;"
-            f" both must be at least {2 * p.intruder_diameter + 4:g} d"
-        )
+    fields.check_spacing(p.field_spacing)
+    channel.check_room(p.width, p.height, p.intruder_diameter)
 
 
 def packing(p, body):
     """Return the channel's grains around the held body, from the cache or by making them."""
-    at = (p.width * D / 2, 0.0)
     return channel.channel(
         channel.ChannelRecipe(
             width=p.width * D,
@@ -139,9 +126,7 @@ def packing(p, body):
             d_max=(1 + p.polydispersity) * D,
             phi=p.phi,
             material=material(0.0, PREPARATION_DAMPING),
-            beads=tuple(map(tuple, body.beads + at)),
-            bead_radius=body.bead_radius,
-            outline=tuple(map(tuple, body.outline + at)),
+            **body.placed((p.width * D / 2, 0.0)),
             body_area=body.area,
             closing_speed=CLOSING_SPEED,
             rest_speed=REST_SPEED,
@@ -159,49 +144,17 @@ def add_walls(p):
     return [id_ for clump in clumps for id_ in scene.members(clump)], clumps
 
 
-# Drive, Measure, Run --------------------------------------------------------------------------------------------------
-
-
-def run(p, folder):
-    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
-    check_room(p)
-    dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
-    body = bodies.body_of(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
-    smallest = (1 - p.polydispersity) * D / 2
-    ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
-    if folder.resumed:
-        stage = {name: folder.resumed[name] for name in ("walls", "grains", "body", "phi")}
-        recording.load_scene(folder)
-    else:
-        stage = build(p, grains, dt, body)
-    n_grains = stage["grains"][1] - stage["grains"][0]
-    folder.note(dt=dt, dt_over_critical=ratio, n_grains=n_grains)
-    folder.write("intruder", body.as_arrays("m"))
-    print(f"{n_grains} grains, phi = {stage['phi']:.4f}, dt = {dt:.3g} s, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
-    record(p, folder, stage)
-
-
 def build(p, grains, dt, body):
-    """Put walls, grains, body, drive and measure into YADE; return their ids, first and behind the last, and phi."""
+    """Put walls, grains, body, drive and measures into YADE; return their ids, first and behind the last, and phi."""
     from yade import O
 
     packed = packing(p, body)
     scene.start(p.width * D, p.height * D)
     walls, clumps = add_walls(p)
     ids = scene.add_disks(packed["x"], packed["y"], packed["r"], DENSITY)
-    held = bodies.add(body, p.width * D / 2, 0.0, DENSITY)
-    drive = engines.SpinTranslateDrive(body=held, velocity=(p.v0, 0, 0), spin=(0, 0, p.spin), label="drive")
-    binner = engines.ContactForceBinner(body=held, reference="motion", every=SAMPLE_EVERY, label="binner")
+    held = intruder.add_held(body, p.width * D / 2, 0.0, DENSITY)
     O.dt = dt
-    measures = [binner, *field_averager(p, held)]
-    scene.run_on(
-        p.loop,
-        grains,
-        gravity=0.0,
-        between=[*measures, drive],
-        precision=p.precision,
-        largest_overlap=p.largest_overlap,
-    )
+    scene.run_as_asked(p, grains, gravity=0.0, between=[*measures(p, held, dt), imposed_motion(p, held)])
     for wall, side in zip(clumps, (1, -1)):
         scene.load_on(wall, (0, side * p.wall_pressure * p.width * D, 0))
     return dict(
@@ -209,36 +162,74 @@ def build(p, grains, dt, body):
     )
 
 
-def field_averager(p, held):
-    """Return, in a list, the engine that averages the fields in the body's frame, or none; it sleeps until the steady state."""
-    from yade import O
+# Drive ----------------------------------------------------------------------------------------------------------------
 
-    if not p.fields:
-        return []
+
+def imposed_motion(p, held):
+    """Return the drive that imposes all of the body's motion."""
+    return engines.SpinTranslateDrive(body=held, velocity=(p.v0, 0, 0), spin=(0, 0, p.spin), label="drive")
+
+
+# Measure --------------------------------------------------------------------------------------------------------------
+
+
+def measures(p, held, dt):
+    """Return the binner of the forces on the body and, if asked for, the averager of fields, asleep until the steady state."""
+    binner = engines.ContactForceBinner(body=held, reference="motion", every=SAMPLE_EVERY, label="binner")
+    return [binner, field_averager(p, held, dt)] if p.fields else [binner]
+
+
+def field_averager(p, held, dt):
+    """Return the engine that averages the fields in the body's frame."""
     reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
-    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * O.dt) / FIELD_SAMPLES))
-    window = dict(
-        low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0), spacing=p.field_spacing * D
-    )
-    return [
-        engines.FieldAverager(
-            body=held, kernel="diskBin", relative=True, stress=False, every=every, dead=True, label="around", **window
+    corners = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0))
+    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * dt) / FIELD_SAMPLES))
+    bins = dict(kernel="diskBin", spacing=p.field_spacing * D, relative=True, stress=False)
+    return engines.FieldAverager(body=held, every=every, dead=True, label="around", **bins, **corners)
+
+
+def say_if_not_resolved(p, found):
+    """Say that the channel was too short for the error of L/D that was asked for."""
+    if p.until_error and not found.is_good_to(p.until_error, FEWEST_BLOCKS):
+        print(
+            f"one channel length did not give L/D to {p.until_error:g}: its error is {found.summary['lift_to_drag_err']:.2g};"
+            " average over seeds, or take a longer channel",
+            file=sys.stderr,
         )
-    ]
+
+
+# Run ------------------------------------------------------------------------------------------------------------------
+
+
+def run(p, folder):
+    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
+    check_room(p)
+    dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
+    body = intruder.of_size(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
+    smallest = (1 - p.polydispersity) * D / 2
+    ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
+    if folder.resumed:
+        stage = recording.load_stage(folder, ("walls", "grains", "body", "phi"))
+    else:
+        stage = build(p, grains, dt, body)
+    folder.write("intruder", body.as_arrays("m"))
+    n_grains, also = stage["grains"][1] - stage["grains"][0], f" phi = {stage['phi']:.4f},"
+    recording.announce(folder, grains=n_grains, dt=dt, ratio=ratio, unit="s", also=also)
+    record(p, folder, stage)
 
 
 def record(p, folder, stage):
-    """Run in blocks of a tenth of d of travel; keep block means of the forces, frames and checkpoints."""
+    """Run in blocks of a tenth of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
     from yade import O
 
     folder.declare_series(**UNITS)
     state, binner = O.bodies[stage["body"]].state, O.labeledEngine("binner")
     around = O.labeledEngine("around") if p.fields else None
     samples = max(1, round(BLOCK_TRAVEL * D / (p.v0 * O.dt) / SAMPLE_EVERY))
-    block, track = samples * SAMPLE_EVERY, recording.Track(folder)
+    block, track, ids = samples * SAMPLE_EVERY, recording.Track(folder), range(*stage["grains"])
     steps = int(p.way * D / (p.v0 * O.dt) / block) * block
-    frames_due = list(np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1][folder.frames :])
-    ids = range(*stage["grains"])
+    due = np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1]
+    frames = recording.Frames(folder, due, lambda: scene.picture(ids, stage["walls"], stage["body"]))
 
     def steady():
         return steady_state(track.arrays(), p.settle_travel, p.mu, p.spin_ratio)
@@ -252,24 +243,15 @@ def record(p, folder, stage):
         track.append(row)
         if p.fields:
             around.dead = row["travel"] < p.settle_travel
-        if frames_due and done >= frames_due[0]:
-            frames_due.pop(0)
-            folder.frame(done * O.dt, *scene.picture(ids, stage["walls"], stage["body"]))
+        frames.take_if_due(done, t)
         looks = p.until_error and len(track) % LOOK_EVERY == 0
         return looks and steady().is_good_to(p.until_error, FEWEST_BLOCKS)
 
-    recording.run_sampled(
-        folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=f"driving {p.way:g} d"
-    )
-    if frames_due:  # the run ended early
-        folder.frame(O.time, *scene.picture(ids, stage["walls"], stage["body"]))
+    label = f"driving {p.way:g} d"
+    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=label)
+    frames.take_what_is_left(O.time)
     found = steady()
-    if p.until_error and not found.is_good_to(p.until_error, FEWEST_BLOCKS):
-        print(
-            f"one channel length did not give L/D to {p.until_error:g}: its error is {found.summary['lift_to_drag_err']:.2g};"
-            " average over seeds, or take a longer channel",
-            file=sys.stderr,
-        )
+    say_if_not_resolved(p, found)
     if p.fields:
         fields.write_fields(folder, "around", around)
     folder.write("angular", found.angular, first_travel=found.start)
@@ -278,7 +260,7 @@ def record(p, folder, stage):
 
 def main(**defaults):
     """Entry of this study and of presets, which give `defaults`."""
-    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=results.draw)
+    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":

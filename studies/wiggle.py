@@ -44,9 +44,9 @@ import numpy as np  # noqa: E402
 from graindrive import engines, fields, headless, intruder, lid, packing, progress, recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import StudyParameters, quantity  # noqa: E402
-from graindrive.postproc import wiggle as results  # noqa: E402
+from graindrive.parameters import quantity  # noqa: E402
 from graindrive.postproc.statistics import drift, phase_rates  # noqa: E402
+from graindrive.postproc.wiggle import figure  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -56,20 +56,11 @@ SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
 SKIPPED = 0.1  # of the run, before averages begin
 PHASES = 20  # parts of the cycle
 FIELD_REACH, FIELD_SAMPLES = 15, 100  # d from the body; samples of the fields per period
-SERIES = dict(
-    t="sqrt(d/g)",
-    x="d",
-    y="d",
-    vx="sqrt(d g)",
-    vy="sqrt(d g)",
-    fx="rho d^2 g",
-    fy="rho d^2 g",
-    contacts="-",
-    work="rho g d^3",
-)
+MOTION = dict(x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g")
+SERIES = dict(t="sqrt(d/g)", **MOTION, contacts="-", work="rho g d^3")
 
 
-class WiggleParameters(StudyParameters):
+class WiggleParameters(intruder.BodyParameters):
     """What the wiggle study knows, in units of d, rho, g."""
 
     shape: str = quantity(
@@ -95,11 +86,6 @@ class WiggleParameters(StudyParameters):
     fields: bool = quantity(False, "-", "also average area fraction, velocity and pressure around the body by phase")
     lid_pressure: float = quantity(0.0, "rho d g", "weight over width of a lid: 0.84 for every d of bed left out", ge=0)
     lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
-
-    def identity(self):
-        """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
-        outline = {"outline": intruder.contents_of(self.shape)} if intruder.names_a_file(self.shape) else {}
-        return {**super().identity(), **outline}
 
 
 PRESETS = {
@@ -131,18 +117,8 @@ def body_of(p):
     return body
 
 
-def check_period(p, dt):
-    """A sample of the motion is at least one time step."""
-    if p.amplitude and p.period < SAMPLES_PER_PERIOD * dt:
-        raise UsageError(
-            f"period={p.period:g} sqrt(d/g) must be at least {SAMPLES_PER_PERIOD} time steps, {SAMPLES_PER_PERIOD * dt:.3g};"
-            " raise it or lower dt_factor"
-        )
-
-
 def make_bed(p, body, at, dt, grains):
     """Return the settled bed around the held body, from the cache or by pouring it."""
-    beads, outline = body.placed(at)
     return packing.settled_bed(
         packing.BedRecipe(
             width=p.width,
@@ -150,9 +126,7 @@ def make_bed(p, body, at, dt, grains):
             d_min=SMALLEST_DIAMETER,
             d_max=LARGEST_DIAMETER,
             material=grains,
-            beads=beads,
-            bead_radius=body.clump.bead_radius,
-            outline=outline,
+            **body.placed(at),
             outline_area=body.area,
             dt=dt,
             rest=p.rest,
@@ -163,32 +137,6 @@ def make_bed(p, body, at, dt, grains):
     )
 
 
-# Drive, Measure, Run --------------------------------------------------------------------------------------------------
-
-
-def run(p, folder):
-    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
-    grains, dt = material(p), TIME_STEP * p.dt_factor
-    body = body_of(p)
-    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
-    check_period(p, dt)
-    progress.require_feasible(p.time / dt)
-    if folder.resumed:
-        stage = {name: folder.resumed[name] for name in ("base", "grains", "body", "lid")}
-        recording.load_scene(folder)
-    else:
-        at = np.array([p.width / 2, p.height - p.depth])
-        stage = build(p, body, at, make_bed(p, body, at, dt, grains), dt, grains)
-    folder.note(dt=dt, dt_over_critical=ratio, n_grains=stage["grains"])
-    folder.write(
-        "intruder",
-        dict(beads=(body.clump.beads, "d"), outline=(body.vertices, "d"), bead_radius=(body.clump.bead_radius, "d")),
-    )
-    folder.summarize(fall_height=body.fall_height, intruder_height=body.height)
-    print(f"{stage['grains']} grains, dt = {dt:.3g} sqrt(d/g), dt/dt_crit = {ratio:.3g}", file=sys.stderr)
-    record(p, folder, stage)
-
-
 def build(p, body, at, bed, dt, grains):
     """Put bed, lid, body, drive and measures into YADE; return counts of base and grains, ids of body and lid."""
     from yade import O
@@ -196,63 +144,46 @@ def build(p, body, at, bed, dt, grains):
     scene.start(p.width, float(np.max(bed["y"], initial=p.height)) + 2 * p.amplitude + 10)
     base = scene.add_base(p.width, 1.0, grains.density)
     ids = scene.add_disks(bed["x"], bed["y"], bed["r"], bed["density"])
-    held = scene.add_intruder(body.clump, *at, blocked="xzXYZ")
+    held = scene.add_intruder(body, *at, blocked="xzXYZ")
     roof = scene.members(lid.add_rigid(p.width, float(bed["lid_y"]), p.lid_pressure)) if "lid_y" in bed else []
-    drive = engines.OscillationDrive(body=held, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
-    measures = [engines.ContactForceBinner(body=held, label="binner"), *field_measures(p, held, dt)]
     O.dt = dt
-    scene.run_on(
-        p.loop,
-        grains,
-        gravity=1.0,
-        between=[*measures, drive],
-        precision=p.precision,
-        largest_overlap=p.largest_overlap,
-    )
+    scene.run_as_asked(p, grains, gravity=1.0, between=[*measures(p, held, dt), imposed_motion(p, held)])
     return dict(base=len(base), grains=len(ids), body=held, lid=roof)
 
 
-def field_measures(p, held, dt):
-    """Return the averager of Eqs 3.1-3.5 around the body, by phase, if fields were asked for; asleep until V_y counts."""
-    if not p.fields:
-        return []
+# Drive ----------------------------------------------------------------------------------------------------------------
+
+
+def imposed_motion(p, held):
+    """Return the drive that imposes x of the body."""
+    return engines.OscillationDrive(body=held, amplitude=p.amplitude, period=p.period, form=p.drive, label="drive")
+
+
+def check_period(p, dt):
+    """A sample of the motion is at least one time step."""
+    if p.amplitude and p.period < SAMPLES_PER_PERIOD * dt:
+        raise UsageError(
+            f"period={p.period:g} sqrt(d/g) must be at least {SAMPLES_PER_PERIOD} time steps, {SAMPLES_PER_PERIOD * dt:.3g};"
+            " raise it or lower dt_factor"
+        )
+
+
+# Measure --------------------------------------------------------------------------------------------------------------
+
+
+def measures(p, held, dt):
+    """Return the binner of the forces on the body and, if asked for, the averager of fields, which sleeps until V_y counts."""
+    binner = engines.ContactForceBinner(body=held, label="binner")
+    return [binner, field_averager(p, held, dt)] if p.fields else [binner]
+
+
+def field_averager(p, held, dt):
+    """Return the averager of Eqs 3.1-3.5 around the body, by phase."""
     reach = min(FIELD_REACH, 2 * int(p.width / 4))
     corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=0.5)
     phases = dict(phases=PHASES, period=p.period, every=max(1, round(p.period / FIELD_SAMPLES / dt)))
-    return [
-        engines.FieldAverager(
-            body=held, kernel="gaussian", width=1, cutoff=3, dead=True, label="around", **corners, **phases
-        )
-    ]
-
-
-def record(p, folder, stage):
-    """Run in blocks, a fortieth of a period each; keep series, frames, checkpoints, then rise rates and fields."""
-    from yade import O
-
-    folder.declare_series(**SERIES)
-    state, drive, binner = O.bodies[stage["body"]].state, O.labeledEngine("drive"), O.labeledEngine("binner")
-    around = O.labeledEngine("around") if p.fields else None
-    steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
-    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
-    frames_due, track = list(np.linspace(0, steps, p.frames).round()[folder.frames :]), recording.Track(folder)
-
-    def sample(done):
-        t = done * O.dt
-        if not state.pos[1] > 0:
-            raise RuntimeError(f"step {done}: the body fell through the base, to y = {state.pos[1]:.3g} d")
-        track.append(dict(t=t, y=state.pos[1]))
-        folder.append(t=t, contacts=binner.lastContactNumber, work=drive.work, **motion(state, drive))
-        if p.fields:
-            around.dead = t < SKIPPED * p.time
-        if frames_due and done >= frames_due[0]:
-            frames_due.pop(0)
-            folder.frame(t, *scene.picture(ids, [*base, *stage["lid"]], stage["body"]))
-
-    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
-    keep_rates(p, folder, **track.arrays())
-    if p.fields:
-        fields.write_fields(folder, "around", around, fields.GRAIN)
+    smooth = dict(kernel="gaussian", width=1, cutoff=3)
+    return engines.FieldAverager(body=held, dead=True, label="around", **smooth, **corners, **phases)
 
 
 def motion(state, drive):
@@ -270,9 +201,57 @@ def keep_rates(p, folder, t, y):
     folder.write("phase", dict(phase=(phases, "T"), vy=(rates, "sqrt(d g)"), vy_err=(errors, "sqrt(d g)")))
 
 
+# Run ------------------------------------------------------------------------------------------------------------------
+
+
+def run(p, folder):
+    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
+    grains, dt, body = material(p), TIME_STEP * p.dt_factor, body_of(p)
+    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
+    check_period(p, dt)
+    progress.require_feasible(p.time / dt)
+    if folder.resumed:
+        stage = recording.load_stage(folder, ("base", "grains", "body", "lid"))
+    else:
+        at = np.array([p.width / 2, p.height - p.depth])
+        stage = build(p, body, at, make_bed(p, body, at, dt, grains), dt, grains)
+    folder.write("intruder", body.as_arrays("d"))
+    folder.summarize(fall_height=body.fall_height, intruder_height=body.height)
+    recording.announce(folder, grains=stage["grains"], dt=dt, ratio=ratio, unit="sqrt(d/g)")
+    record(p, folder, stage)
+
+
+def record(p, folder, stage):
+    """Run in blocks, a fortieth of a period each; keep series, frames, checkpoints, then rise rates and fields."""
+    from yade import O
+
+    folder.declare_series(**SERIES)
+    state, drive, binner = O.bodies[stage["body"]].state, O.labeledEngine("drive"), O.labeledEngine("binner")
+    around = O.labeledEngine("around") if p.fields else None
+    steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
+    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
+    due, track = np.linspace(0, steps, p.frames).round(), recording.Track(folder)
+    frames = recording.Frames(folder, due, lambda: scene.picture(ids, [*base, *stage["lid"]], stage["body"]))
+
+    def sample(done):
+        t = done * O.dt
+        if not state.pos[1] > 0:
+            raise RuntimeError(f"step {done}: the body fell through the base, to y = {state.pos[1]:.3g} d")
+        track.append(dict(t=t, y=state.pos[1]))
+        folder.append(t=t, contacts=binner.lastContactNumber, work=drive.work, **motion(state, drive))
+        if p.fields:
+            around.dead = t < SKIPPED * p.time
+        frames.take_if_due(done, t)
+
+    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
+    keep_rates(p, folder, **track.arrays())
+    if p.fields:
+        fields.write_fields(folder, "around", around, fields.GRAIN)
+
+
 def main(**defaults):
     """Entry of this study and of its presets, which give `defaults`."""
-    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=results.draw)
+    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":

@@ -109,6 +109,7 @@ private:
 	void guarded(Work work);
 	void compute_body_forces();
 	void follow_bodies();
+	std::vector<loop::Spring> kept_springs() const;
 	void keep_walls();
 	void bring_walls();
 	void bring_loads();

@@ -41,31 +41,38 @@ bool Stepper::is_led(std::uint32_t row) const
 std::array<Stepper::Limit, 4> Stepper::limits() const
 {
 	std::array<Limit, 4> all{};
-	for (const Side side : sides) {
-		const bool x = is_across_x(side);
-		Limit& limit = all[int(side)];
-		if (x ? scene.box.periodic_x : scene.box.periodic_y) continue;
-		const bool is_down = (std::abs(scene.gravity_x) > std::abs(scene.gravity_y)) == x;  // the axis of the larger part
-		const double pull = is_down ? (x ? scene.gravity_x : scene.gravity_y) * outward(side) : 0;
-		if (guards.bounded) {
-			const double low = x ? guards.x_low : guards.y_low, high = x ? guards.x_high : guards.y_high;
-			limit = { outward(side) < 0 ? low : high, low < high, "the bounds that were set",
-				"wider bounds, if grains may be there" };
-		} else if (pull > 0) {
-			double last = -HUGE_VAL;  // outwards
-			for (std::uint32_t row = n_free; row < n_grains; ++row) {
-				const RigidBody& body = scene.bodies[members[row - n_free].body];
-				if (x ? body.responds_x : body.responds_y) continue;
-				last = std::max(last, outward(side) * (x ? rows[row].x : rows[row].y) + rows[row].radius);
-			}
-			limit = { outward(side) * (last + free_fall * 2 * largest_free_radius), last > -HUGE_VAL,
-				"three diameters behind the last grain that is held against gravity",
-				"a base without gaps, or bounds if grains may fall there" };
-		}
-	}
+	for (const Side side : sides)
+		if (!(is_across_x(side) ? scene.box.periodic_x : scene.box.periodic_y))
+			all[int(side)] = guards.bounded ? given_bound(side) : behind_held_grains(side);
 	for (const Wall& wall : scene.walls)
 		all[int(wall.side)] = { wall.position, true, std::string("wall ") + name_of(wall.side), "a slower or heavier wall" };
 	return all;
+}
+
+/// Two equal bounds are none.
+Stepper::Limit Stepper::given_bound(Side side) const
+{
+	const bool x = is_across_x(side);
+	const double low = x ? guards.x_low : guards.y_low, high = x ? guards.x_high : guards.y_high;
+	return { outward(side) < 0 ? low : high, low < high, "the bounds that were set", "wider bounds, if grains may be there" };
+}
+
+/// None where gravity does not pull, or no grain is held against it.
+Stepper::Limit Stepper::behind_held_grains(Side side) const
+{
+	const bool x = is_across_x(side);
+	const bool is_down = (std::abs(scene.gravity_x) > std::abs(scene.gravity_y)) == x;  // the axis of the larger part
+	const double pull = (x ? scene.gravity_x : scene.gravity_y) * outward(side);
+	if (!is_down || !(pull > 0)) return {};
+	double last = -HUGE_VAL;  // outwards
+	for (std::uint32_t row = n_free; row < n_grains; ++row) {
+		const RigidBody& body = scene.bodies[members[row - n_free].body];
+		if (x ? body.responds_x : body.responds_y) continue;
+		last = std::max(last, outward(side) * (x ? rows[row].x : rows[row].y) + rows[row].radius);
+	}
+	return { outward(side) * (last + free_fall * 2 * largest_free_radius), last > -HUGE_VAL,
+		"three diameters behind the last grain that is held against gravity",
+		"a base without gaps, or bounds if grains may fall there" };
 }
 
 void Stepper::check_box() const

@@ -165,12 +165,14 @@ private:
 	bool one_step(int rank, bool early_pairs_done);
 	void compute_early_pairs(int rank);
 	struct Limit {
-		double at;  // of centres [m]
-		bool is_set;
+		double at = 0;  // of centres [m]
+		bool is_set = false;
 		std::string by;  // what sets it, for the message
 		std::string cause;
 	};
 	std::array<Limit, 4> limits() const;  // by Side
+	Limit given_bound(Side side) const;
+	Limit behind_held_grains(Side side) const;
 	void check_pairs() const;
 	void check_box() const;
 	bool is_led(std::uint32_t row) const;

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from .errors import UsageError
+
 
 class FieldUnits(NamedTuple):
     """Names of the units that a study counts in, as the run folder keeps them."""
@@ -17,6 +19,12 @@ SI = FieldUnits("m", "m/s", "m^2/s^2", "kg/m^2", "N/m")
 GRAIN = FieldUnits("d", "sqrt(g d)", "g d", "rho", "rho g d")  # rho of the disks, so that a disk of d weighs pi/4
 
 SETTINGS = ("kernel", "spacing", "width", "cutoff", "every", "relative", "phases", "period", "phaseStart")
+
+
+def check_spacing(spacing):
+    """Raise UsageError for bins whose edge [d] does not divide 1 d."""
+    if abs(1 / spacing - round(1 / spacing)) > 1e-9:
+        raise UsageError(f"field_spacing={spacing:g} d must divide 1 d; take 1/{max(1, round(1 / spacing))}")
 
 
 def write_fields(folder, name, averager, units=SI):

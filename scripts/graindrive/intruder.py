@@ -1,63 +1,116 @@
-"""The body that a study drives: its outline by name or from a file, turned, with the clump of beads along it."""
+"""The body that a study drives: a disk, or an outline by name or from a file, turned, with a clump of beads along it."""
 
 import functools
 import hashlib
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from . import engines
+from . import engines, scene
 from .errors import UsageError, one_line
+from .parameters import StudyParameters
 
 
 @dataclass(frozen=True)
 class Intruder:
-    """A body about its centroid: corners of its outline, shape (m, 2) [d], and the clump from `engines.clump_of`.
+    """A body about its centroid: `beads` (n, 2), their `bead_radius`, corners of its `outline` (m, 2), mass and inertia.
 
-    `area` [d^2] and `fall_height` [d] are the outline's own, exact for a disk: from the lowest point with a vertical
-    tangent to the top (the cavity model's l).
+    A single exact disk has one bead and no outline, (0, 2). `area` and `fall_height` are the outline's own, exact for a
+    disk: the latter is from the lowest point with a vertical tangent to the top (the cavity model's l). Units are the
+    caller's.
     """
 
-    vertices: np.ndarray
+    beads: np.ndarray
+    bead_radius: float
+    outline: np.ndarray
     area: float
     fall_height: float
-    clump: object
+    mass: float
+    inertia: float
 
     @property
     def height(self):
-        """Extent along y [d]."""
-        return float(np.ptp(self.vertices[:, 1]))
+        """Extent along y of a body with an outline."""
+        return float(np.ptp(self.outline[:, 1]))
 
     def placed(self, at):
-        """Return rows x, y of beads and of corners with the centroid at `at`, as hashable tuples."""
-        return tuple(map(tuple, self.clump.beads + at)), tuple(map(tuple, self.vertices + at))
+        """Return what a packing's recipe asks for, with the centroid at `at`: beads and outline as rows, the beads' radius."""
+        beads, outline = (tuple(map(tuple, points + at)) for points in (self.beads, self.outline))
+        return dict(beads=beads, bead_radius=self.bead_radius, outline=outline)
+
+    def scaled(self, factor):
+        """Return the body with all lengths times `factor` and the same mass."""
+        lengths = {name: getattr(self, name) * factor for name in ("beads", "bead_radius", "outline", "fall_height")}
+        return replace(self, **lengths, area=self.area * factor**2, inertia=self.inertia * factor**2)
+
+    def as_arrays(self, unit):
+        """Return what a run folder keeps of it, for the group `intruder`."""
+        arrays = dict(beads=(self.beads, unit), bead_radius=(self.bead_radius, unit))
+        return {**arrays, "outline": (self.outline, unit)} if len(self.outline) else arrays
 
 
-def make(shape, *, orientation_deg, bead_diameter, bead_spacing, mass):
+def exact_disk(diameter, density):
+    """Return a disk that is one bead, density in mass over the square of the diameter's unit."""
+    radius, area = diameter / 2, np.pi * diameter**2 / 4
+    inertia = density * area * diameter**2 / 8
+    return Intruder(np.zeros((1, 2)), radius, np.zeros((0, 2)), area, radius, density * area, inertia)
+
+
+def make(shape, *, bead_diameter, mass, orientation_deg=0, bead_spacing=1):
     """Return the `Intruder` of that shape, turned counter-clockwise about its centroid by `orientation_deg`.
 
-    `shape` is a name that `engines.outline_of` knows or a file of vertices; lengths in d, `bead_spacing` in bead
-    diameters, mass in rho d^2. Raises UsageError for what cannot be a body.
+    `shape` is a name that `engines.outline_of` knows or a file of vertices; lengths in its unit, `bead_spacing` in bead
+    diameters. Raises UsageError for what cannot be a body.
     """
+    return beads_along(outline_of(shape, orientation_deg), shape, bead_diameter, bead_spacing, mass)
+
+
+def of_size(shape, size, bead_diameter, density):
+    """Return a disk of diameter `size` for "disk", else the outline of that shape scaled to `size` as its longer side.
+
+    Lengths in one unit, density in mass over its square. Raises UsageError for what cannot be a body.
+    """
+    if shape == "disk":
+        return exact_disk(size, density)
+    outline = outline_of(shape)
+    scale = size / np.ptp(about_centroid(outline), axis=0).max()
+    mass = density * (outline.area * scale**2)
+    return beads_along(outline, shape, bead_diameter / scale, 1, mass).scaled(scale)
+
+
+def outline_of(shape, orientation_deg=0):
+    """Return the outline that a name or a file means, turned by `orientation_deg`; UsageError if there is none."""
     try:
         is_file = names_a_file(shape)
         drawn = engines.read_outline(os.path.expanduser(shape)) if is_file else engines.outline_of(shape)
     except ValueError as error:
         raise not_a_body(shape, error) from None
-    outline = drawn.turned(math.radians(orientation_deg))
-    clump = beads_along(outline, shape, bead_diameter, bead_spacing, mass)
-    return Intruder(outline.vertices - np.array(outline.centroid), outline.area, outline.fall_height, clump)
+    return drawn.turned(math.radians(orientation_deg))
+
+
+def about_centroid(outline):
+    """Return the corners of an outline about its centroid, shape (m, 2)."""
+    return outline.vertices - np.array(outline.centroid)
 
 
 def beads_along(outline, shape, bead_diameter, bead_spacing, mass):
-    """Return the clump of beads along the outline of `shape`; UsageError if they do not fit."""
+    """Return the `Intruder` with beads along the outline of `shape`; UsageError if they do not fit."""
     try:
-        return engines.clump_of(outline, bead_diameter, mass, bead_spacing)
+        clump = engines.clump_of(outline, bead_diameter, mass, bead_spacing)
     except ValueError as error:
         raise not_a_body(shape, error) from None
+    own = about_centroid(outline), outline.area, outline.fall_height
+    return Intruder(clump.beads, clump.bead_radius, *own, clump.mass, clump.inertia)
+
+
+def add_held(body, x, y, density):
+    """Put a body that nothing but a drive moves into YADE at (x, y), a single disk as itself; return its id."""
+    if len(body.outline) == 0:
+        return scene.add_disks([x], [y], [body.bead_radius], density, "xyzXYZ")[0]
+    return scene.add_intruder(body, x, y)
 
 
 def not_a_body(shape, error):
@@ -69,6 +122,15 @@ def not_a_body(shape, error):
 def names_a_file(shape):
     """True for an outline's file, False for the name of a built-in shape."""
     return shape.lower().endswith((".wkt", ".csv"))
+
+
+class BodyParameters(StudyParameters):
+    """Parameters of a study whose key `shape` may name an outline's file."""
+
+    def identity(self):
+        """Return all that decides the result: for an outline from a file its contents too, not the name alone."""
+        outline = {"outline": contents_of(self.shape)} if names_a_file(self.shape) else {}
+        return {**super().identity(), **outline}
 
 
 @functools.lru_cache(maxsize=None)
@@ -86,7 +148,7 @@ def check_room(body, *, swing, width, height, depth, lid):
     The body's centre lies `depth` below the surface of a bed `width` wide and `height` high and moves by `swing` to either
     side; the uppermost `lid` of the bed is not for it. All in d.
     """
-    (left, bottom), (right, top) = body.vertices.min(axis=0), body.vertices.max(axis=0)
+    (left, bottom), (right, top) = body.outline.min(axis=0), body.outline.max(axis=0)
     needed = right - left + 2 * swing + 4
     if needed > width:
         raise UsageError(

@@ -1,5 +1,7 @@
 """Runs a scene in blocks, samples it after each, and keeps checkpoints from which a run goes on as if never interrupted."""
 
+import sys
+
 import numpy as np
 
 from . import progress, scene
@@ -36,9 +38,38 @@ class Track:
         np.savez(folder / self.FILE, **self.arrays())
 
 
-def load_scene(folder):
-    """Put the scene of the checkpoint from which a resumed run goes on into YADE."""
+class Frames:
+    """Pictures that `picture()` takes after given `steps`, rising; a resumed run takes those that it lacks."""
+
+    def __init__(self, folder, steps, picture):
+        self.folder, self.picture, self.due = folder, picture, list(steps[folder.frames :])
+
+    def take_if_due(self, done, time):
+        """Take a picture if one is due by the step `done`."""
+        if self.due and done >= self.due[0]:
+            self.take(time)
+
+    def take_what_is_left(self, time):
+        """Take one picture more if the run ended before all were due."""
+        if self.due:
+            self.take(time)
+
+    def take(self, time):
+        """Take the next picture."""
+        self.due.pop(0)
+        self.folder.frame(time, *self.picture())
+
+
+def load_stage(folder, names):
+    """Put the scene from which a resumed run goes on into YADE; return the facts of its `stage` by these names."""
     scene.load(folder.resumed["folder"] / SCENE)
+    return {name: folder.resumed[name] for name in names}
+
+
+def announce(folder, *, grains, dt, ratio, unit, also=""):
+    """Say of how many grains and of what time step a run is, with words that are `also` known, and note it in its folder."""
+    folder.note(dt=dt, dt_over_critical=ratio, n_grains=grains)
+    print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
 def run_sampled(folder, steps, block, sample, *, track, stage, grains, label):

@@ -36,7 +36,7 @@ class RunFolder:
         self.path = self.out.with_name(f".{self.out.name}.part-{os.getpid()}")
         self.provenance, self.summary = provenance(parameters, study), {}
         self.series, self.frames, self.lock, self.made = None, 0, None, []
-        self.resumed, self.start = None, time.monotonic()
+        self.resumed, self.start, self.wall_before = None, time.monotonic(), 0.0
 
     def declare_series(self, **units):
         """Name the time series and their units, once, before the first `append`."""
@@ -72,6 +72,11 @@ class RunFolder:
         """Add quantities, and their standard errors as NAME_err, to summary.json."""
         self.summary.update(plain(quantities))
 
+    @property
+    def wall_s(self):
+        """Wall time of the run so far [s], of a resumed one with what led to the checkpoint from which it went on."""
+        return self.wall_before + time.monotonic() - self.start
+
     def checkpoint(self, save, step, **facts):
         """Have `save(folder)` write all that is needed to go on from `step`; it replaces the older checkpoint.
 
@@ -80,7 +85,8 @@ class RunFolder:
         if self.series is not None:
             self.series.flush()
         rows = self.series.rows if self.series is not None else 0
-        facts = {**facts, "step": step, "rows": rows, "frames": self.frames, "digest": self.parameters.digest()}
+        facts = {**facts, "step": step, "rows": rows, "frames": self.frames, "wall_s": self.wall_s}
+        facts["digest"] = self.parameters.digest()
         with signals.deferred():
             run_remains.write_checkpoint(self.path, save, facts)
 
@@ -121,7 +127,7 @@ class RunFolder:
         if self.resumed is None:
             print(f"{self.study}: no interrupted run of these parameters to resume; starting anew", file=sys.stderr)
         else:
-            self.frames = self.resumed["frames"]
+            self.frames, self.wall_before = self.resumed["frames"], self.resumed.get("wall_s", 0.0)
             print(
                 f"{self.study}: going on from step {self.resumed['step']} of {self.resumed['remains']}", file=sys.stderr
             )
@@ -194,7 +200,7 @@ class RunFolder:
 
     def finish_data(self, state):
         """Make the one plain `run.h5` of all that was written; `state` says how the run ended."""
-        self.provenance["wall_s"] = time.monotonic() - self.start
+        self.provenance["wall_s"] = self.wall_s
         if self.series is not None:
             self.series.close()
         series = self.path / "run.h5" if self.series is not None else None

@@ -155,6 +155,11 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
         )
 
 
+def run_as_asked(p, material, gravity, between=()):
+    """Put the loop into O.engines that the parameters of a study ask for."""
+    run_on(p.loop, material, gravity, between, p.precision, p.largest_overlap)
+
+
 def fast_loop():
     """Return the GrainLoop that runs this scene, None under YADE's own loop."""
     from yade import O

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from graindrive import engines
-from graindrive.postproc.cavity_model import CavityModel, smallest_amplitude
+from graindrive.postproc.wiggle.cavity_model import CavityModel, smallest_amplitude
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad

@@ -184,16 +184,13 @@ def test_bad_input_is_one_line_exit_2_and_nothing_written(home, tmp_path, given,
 
 def bed_recipe(**changes):
     body = intruder.make("square", orientation_deg=0, bead_diameter=0.5, bead_spacing=1, mass=9.0)
-    beads, outline = body.placed(np.array([10.0, 7.0]))
     values = dict(
         width=20.0,
         height=16.0,
         d_min=0.9,
         d_max=1.1,
         material=HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, 0.1, 1.0),
-        beads=beads,
-        bead_radius=body.clump.bead_radius,
-        outline=outline,
+        **body.placed(np.array([10.0, 7.0])),
         outline_area=body.area,
         dt=5e-4,
         rest=1e-3,

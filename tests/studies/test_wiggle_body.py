@@ -74,7 +74,7 @@ def test_a_held_body_does_not_move_under_its_grains(wiggle):
     scene.start(p.width, 40)
     scene.add_base(p.width, 1.0, 1.0)
     scene.add_disks(bed["x"], bed["y"], bed["r"], bed["density"])
-    held = scene.add_intruder(body.clump, 15.0, 14.0)
+    held = scene.add_intruder(body, 15.0, 14.0)
     scene.run_on("grain", wiggle.material(p), gravity=1.0)
     O.dt = 5e-4
     state = O.bodies[held].state
@@ -112,17 +112,17 @@ def test_a_shape_is_turned_about_its_centroid_and_keeps_its_mass(wiggle):
     upright = wiggle.body_of(small(wiggle, shape="tall"))
     lying = wiggle.body_of(small(wiggle, shape="tall", orientation_deg=90))
     wide = wiggle.body_of(small(wiggle, shape="wide"))
-    assert np.ptp(lying.vertices, axis=0) == pytest.approx([9.5, 4.5]) == np.ptp(wide.vertices, axis=0)
+    assert np.ptp(lying.outline, axis=0) == pytest.approx([9.5, 4.5]) == np.ptp(wide.outline, axis=0)
     assert lying.fall_height == pytest.approx(wide.fall_height)
     assert (upright.height, lying.height) == pytest.approx((9.5, 4.5))
-    assert lying.clump.mass == upright.clump.mass
+    assert lying.mass == upright.mass
     tilted = wiggle.body_of(small(wiggle, shape="triangle", orientation_deg=17))
-    assert engines.Outline(tilted.vertices).centroid == pytest.approx((0, 0), abs=1e-12)
+    assert engines.Outline(tilted.outline).centroid == pytest.approx((0, 0), abs=1e-12)
 
 
 @pytest.mark.parametrize("spacing", [1.0, 0.4])
 def test_beads_stand_as_close_as_asked(wiggle, spacing):
-    beads = wiggle.body_of(small(wiggle, shape="square", bead_spacing=spacing)).clump.beads
+    beads = wiggle.body_of(small(wiggle, shape="square", bead_spacing=spacing)).beads
     steps = np.hypot(*(np.roll(beads, -1, axis=0) - beads).T)
     assert steps.max() <= 0.5 * spacing * (1 + 1e-12)
     assert steps.max() > 0.5 * spacing * 0.9

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from made_up_runs import MadeUpMagnus, make_campaign
 
-from graindrive.postproc import campaigns, magnus_campaign, results
-from graindrive.postproc.magnus_claims import drag_claims, speed_claims
+from graindrive.postproc.campaign import results
+from graindrive.postproc.campaign.folder import Campaign
+from graindrive.postproc.campaign.report import write_report
+from graindrive.postproc.campaign.verdicts import Verdict
+from graindrive.postproc.magnus import campaign as magnus_campaign
+from graindrive.postproc.magnus.claims import drag_claims, speed_claims
 from graindrive.postproc.reader import RunError
-from graindrive.postproc.verdicts import Verdict
 
 SPEEDS = dict(phi=[0.352, 0.818], v0=[0.25, 0.5, 1.0, 2.0])
 SWEEPS = dict(
@@ -23,7 +26,7 @@ SWEEPS = dict(
 
 
 def claims_on_speed(folder, laws, **options):
-    campaign = campaigns.Campaign.of(make_campaign(folder, laws, dict(speed=SPEEDS), **options))
+    campaign = Campaign.of(make_campaign(folder, laws, dict(speed=SPEEDS), **options))
     return speed_claims(campaign, campaign.sweep("speed"))
 
 
@@ -57,7 +60,7 @@ def test_runs_with_large_errors_decide_nothing(folder):
 
 def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder):
     make_campaign(folder, MadeUpMagnus(rise=0.5), SWEEPS)
-    report = campaigns.write_report(folder).read_text()
+    report = write_report(folder).read_text()
     assert "0 not reproduced, 0 not decided" in report
     assert report.count("![") == len(magnus_campaign.FIGURES)
     names = {f"made_up-{figure.name}" for figure in magnus_campaign.FIGURES}
@@ -67,14 +70,14 @@ def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder):
 
 
 def test_a_drag_that_does_not_rise_with_spin_is_reported(folder):
-    campaign = campaigns.Campaign.of(make_campaign(folder, MadeUpMagnus(rise=0.0), dict(spin=SWEEPS["spin"])))
+    campaign = Campaign.of(make_campaign(folder, MadeUpMagnus(rise=0.0), dict(spin=SWEEPS["spin"])))
     (rise,) = [c for c in drag_claims(campaign, campaign.sweep("spin")) if "spin raises D" in c.text]
     assert rise.verdict is not Verdict.REPRODUCED and abs(rise.measured.value - 1) < 5 * rise.measured.error
 
 
 def test_the_table_has_a_row_per_run_with_keys_and_quantities_sorted(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
-    campaigns.write_report(folder)
+    write_report(folder)
     rows = list(csv.DictReader((folder / "table.csv").open()))
     assert len(rows) == 8
     values = [(float(row["phi"]), float(row["v0"])) for row in rows]
@@ -87,7 +90,7 @@ def test_a_campaign_of_which_nothing_is_done_has_an_empty_table(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
     for run in (folder / "runs").iterdir():
         (run / "run.h5").unlink()
-    assert campaigns.write_report(folder).name == "table.csv"
+    assert write_report(folder).name == "table.csv"
     assert (folder / "table.csv").read_text() == "run,sweeps\n"
 
 
@@ -95,7 +98,7 @@ def test_missing_runs_are_counted_and_their_claims_not_made_up(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
     for run in sorted((folder / "runs").glob("phi_0.818*"))[1:]:
         (run / "summary.json").unlink()
-    report = campaigns.write_report(folder).read_text()
+    report = write_report(folder).read_text()
     assert "5 runs of `magnus` (3 more are missing)" in report
     (row,) = [line for line in report.splitlines() if "0.818: log D" in line]
     assert "no data" in row and "**not decided**" in row
@@ -103,21 +106,21 @@ def test_missing_runs_are_counted_and_their_claims_not_made_up(folder):
 
 def test_a_folder_without_a_plan_is_refused(tmp_path):
     with pytest.raises(RunError, match="holds no campaign.json"):
-        campaigns.Campaign.of(tmp_path)
+        Campaign.of(tmp_path)
 
 
 def test_results_keep_other_campaigns_and_replace_their_own(folder, tmp_path):
     studies = tmp_path / "studies"
     studies.mkdir()
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
-    campaigns.write_report(folder)
+    write_report(folder)
     other = folder.with_name("other")
     folder.rename(other)
     for name in ("b", "a", "b"):
         (other / "campaign.json").write_text(
             json.dumps({**json.loads((other / "campaign.json").read_text()), "name": name})
         )
-        campaigns.write_report(other)
+        write_report(other)
         results.publish([other], studies)
     text = (studies / "RESULTS.md").read_text()
     assert list(results.stored_sections(studies / "RESULTS.md")) == ["a", "b"]

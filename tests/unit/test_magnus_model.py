@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from graindrive.postproc import magnus_forces, magnus_model
+from graindrive.postproc.magnus import forces, model
 
 THETA = (np.arange(24) + 0.5) * np.pi / 12 - np.pi
 
@@ -22,20 +22,20 @@ def test_equations_14_and_15_give_the_lift_of_any_distribution_that_slips(mu):
     drag, lift, pressing = slipping(normal, mu)
     kappa = pressing / drag
     assert kappa < 1
-    assert magnus_model.saturated_lift_to_drag(kappa, mu) == pytest.approx(lift / drag, rel=1e-12)
+    assert model.saturated_lift_to_drag(kappa, mu) == pytest.approx(lift / drag, rel=1e-12)
 
 
 def test_a_symmetric_distribution_gives_mu():
     normal = np.cos(THETA) * (np.abs(THETA) < np.pi / 2)
     drag, lift, pressing = slipping(normal, 0.5)
     assert pressing / drag == pytest.approx(1, rel=1e-12)
-    assert lift / drag == pytest.approx(magnus_model.symmetric_lift_to_drag(0.5), rel=1e-12)
+    assert lift / drag == pytest.approx(model.symmetric_lift_to_drag(0.5), rel=1e-12)
 
 
 def test_the_papers_kappas_give_its_saturation():
-    assert magnus_model.saturated_lift_to_drag(0.95, 0.5) == pytest.approx(0.375, rel=1e-12)
-    assert magnus_model.saturated_lift_to_drag(0.90, 0.5) == pytest.approx(0.25, rel=1e-12)
-    assert magnus_model.saturated_lift_to_drag(1.0, 0.0) == 0
+    assert model.saturated_lift_to_drag(0.95, 0.5) == pytest.approx(0.375, rel=1e-12)
+    assert model.saturated_lift_to_drag(0.90, 0.5) == pytest.approx(0.25, rel=1e-12)
+    assert model.saturated_lift_to_drag(1.0, 0.0) == 0
 
 
 def series(n, mu=0.5, seed=2):
@@ -60,7 +60,7 @@ def series(n, mu=0.5, seed=2):
 
 
 def test_measured_kappa_gives_back_lift_over_drag_when_all_slips():
-    found = magnus_forces.steady_state(series(2000), 30, 0.5, 5.0).summary
+    found = forces.steady_state(series(2000), 30, 0.5, 5.0).summary
     assert found["model_kappa"] == pytest.approx(found["lift_to_drag"], rel=1e-10)
     assert found["model_kappa_err"] == pytest.approx(found["lift_to_drag_err"], rel=0.02)  # linear in the same ratio
     assert found["slipping_share"] == 1 and found["front_share"] == 1
@@ -69,15 +69,15 @@ def test_measured_kappa_gives_back_lift_over_drag_when_all_slips():
 
 def test_lift_follows_the_spin_and_fluctuations_add_up():
     rows = series(2000)
-    up = magnus_forces.steady_state(rows, 30, 0.5, 5.0).summary
-    down = magnus_forces.steady_state({**rows, "fy": -rows["fy"]}, 30, 0.5, -5.0).summary
+    up = forces.steady_state(rows, 30, 0.5, 5.0).summary
+    down = forces.steady_state({**rows, "fy": -rows["fy"]}, 30, 0.5, -5.0).summary
     assert up["lift"] == down["lift"] > 0
     kept = rows["fx"][300:]
     assert up["drag_std"] == pytest.approx(np.sqrt(4 + kept.var()), rel=1e-12)
 
 
 def test_mobilised_friction_is_one_where_all_slips_and_unknown_where_nothing_presses():
-    mobilised = magnus_forces.steady_state(series(500), 0, 0.5, 5.0).angular["mobilised"][0]
+    mobilised = forces.steady_state(series(500), 0, 0.5, 5.0).angular["mobilised"][0]
     front = np.abs(THETA) < np.pi / 2
     assert np.allclose(mobilised[front], -1) and np.isnan(mobilised[~front]).all()
 
@@ -85,4 +85,4 @@ def test_mobilised_friction_is_one_where_all_slips_and_unknown_where_nothing_pre
 def test_a_drifting_series_is_not_steady():
     rows = series(2000)
     drifting = {**rows, "fx": rows["fx"] * np.linspace(3, 1, 2000)}
-    assert magnus_forces.steady_state(drifting, 0, 0.5, 5.0).summary["steady"] == 0
+    assert forces.steady_state(drifting, 0, 0.5, 5.0).summary["steady"] == 0

@@ -8,8 +8,8 @@ import pytest
 
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.postproc import __main__ as command
-from graindrive.postproc import wiggle
 from graindrive.postproc.reader import Run, RunError
+from graindrive.postproc.wiggle import figure
 from graindrive.run_folder import RunFolder
 
 
@@ -100,7 +100,7 @@ def test_a_growing_run_shows_its_series(tmp_path):
         folder.series.flush()
         run = Run(folder.path)
         assert run.state == "running" and len(run.series["t"]) == 2001 and run.frame_names == []
-        wiggle.draw(folder.path)
+        figure.draw(folder.path)
 
 
 @pytest.mark.parametrize("options", [{}, {"frames": 0}, {"contacts": False}, {"width": 300.0}])
@@ -108,7 +108,7 @@ def test_the_figure_is_drawn_from_the_folder_alone(tmp_path, options):
     from matplotlib.image import imread
 
     out = make(tmp_path / "run", **options)
-    wiggle.draw(out)
+    figure.draw(out)
     image = imread(out / "figure.png")
     assert image.shape[1] == 1020, "3.4 inches at 300 dpi"
     assert image.shape[0] > (700 if options.get("frames", 2) else 500), "a second panel where there is a frame"
@@ -120,7 +120,7 @@ def test_the_figure_shows_grains_chains_and_intruder(run_folder, monkeypatch):
     """Colours in the picture: the base's grey, the chains' vermillion, the beads' black."""
     from matplotlib.image import imread
 
-    wiggle.draw(run_folder, frame=0)
+    figure.draw(run_folder, frame=0)
     pixels = (255 * imread(run_folder / "figure.png")[500:, :, :3]).astype(int).reshape(-1, 3)
     for colour in ((0xBB, 0xBB, 0xBB), (0xD5, 0x5E, 0x00), (0, 0, 0)):
         assert np.sum(np.abs(pixels - colour).sum(axis=1) < 6) > 100
@@ -130,7 +130,7 @@ def test_the_figure_shows_grains_chains_and_intruder(run_folder, monkeypatch):
     "value, error, words", [(0.01234, 0.0005, "0.01234 ± 0.00050"), (-3.2, 0.4, "−3.20 ± 0.40"), (1.5, 0, "1.5")]
 )
 def test_numbers_carry_the_digits_that_their_error_allows(value, error, words):
-    assert wiggle.with_error(value, error) == words
+    assert figure.with_error(value, error) == words
 
 
 def test_command_redraws(run_folder, capsys):

@@ -1,10 +1,13 @@
 """Series, items and their union: what is written comes back, and at every moment it can be read."""
 
+import json
+from types import SimpleNamespace
+
 import h5py
 import numpy as np
 import pytest
 
-from graindrive import run_data
+from graindrive import run_data, run_folder
 from graindrive.errors import UsageError
 from graindrive.parameters import StudyParameters
 from graindrive.run_folder import RunFolder, plain
@@ -106,6 +109,22 @@ class TestFolder:
                 folder.frame(0.0, {"x": np.zeros(3)})
                 raise KeyboardInterrupt
         assert sorted(p.name for p in tmp_path.iterdir()) == ["a.interrupted", "a.interrupted-2"]
+
+
+def test_a_resumed_run_took_the_time_of_its_earlier_sessions_too(tmp_path, monkeypatch):
+    now = SimpleNamespace(seconds=0.0)
+    monkeypatch.setattr(run_folder, "time", SimpleNamespace(monotonic=lambda: now.seconds))
+    for session, seconds in enumerate((40, 30)):
+        parameters = StudyParameters(out=str(tmp_path / "a"), resume=session > 0)
+        with pytest.raises(KeyboardInterrupt), RunFolder(parameters, study="toy") as folder:
+            now.seconds += seconds
+            folder.checkpoint(lambda place: None, 10 * (session + 1))
+            now.seconds += 5  # these steps are made again
+            raise KeyboardInterrupt
+        now.seconds += 1000  # nobody runs it
+    with RunFolder(StudyParameters(out=str(tmp_path / "a"), resume=True), study="toy"):
+        now.seconds += 25
+    assert json.loads((tmp_path / "a" / "summary.json").read_text())["wall_s"] == 40 + 30 + 25
 
 
 def test_a_disk_that_fills_up_keeps_the_first_error_and_names_the_folder(tmp_path, monkeypatch, capsys):

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from graindrive.postproc.campaign.verdicts import Agrees, Between, Claim, Verdict, above, below, tally
 from graindrive.postproc.measured import Measured, mean_of, polynomial_through, power_of, steepest_place
-from graindrive.postproc.verdicts import Agrees, Between, Claim, Verdict, above, below, tally
 
 RULES = [Agrees(1, 0.1, 0.2), above(0), below(3), Between(0, 3)]
 NUMBERS = st.floats(-1e6, 1e6)

@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 from made_up_runs import write_run
 
-from graindrive.postproc import campaigns, results, wiggle_campaign, wiggle_runs
+from graindrive.postproc.campaign import results
+from graindrive.postproc.campaign.folder import Campaign
+from graindrive.postproc.campaign.report import write_report
+from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Measured
-from graindrive.postproc.verdicts import Verdict
-from graindrive.postproc.wiggle_claims import (
+from graindrive.postproc.wiggle import campaign as wiggle_campaign
+from graindrive.postproc.wiggle import runs as wiggle_runs
+from graindrive.postproc.wiggle.claims import (
     drive_claims,
     order_and_triangle_claims,
     period_claims,
@@ -83,7 +87,7 @@ def campaign_of(folder, sweeps):
                 runs.setdefault(name, dict(name=name, sweeps=[]))["sweeps"].append(sweep)
     plan = dict(name=folder.name, file="x.yaml", study="wiggle", report="wiggle", runs=list(runs.values()))
     (folder / "campaign.json").write_text(json.dumps(plan))
-    return campaigns.Campaign.of(folder)
+    return Campaign.of(folder)
 
 
 PERIOD_GRIDS = [
@@ -187,7 +191,7 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
             scene=[dict(scene, period=[1.0, 4.0]) for scene in SCENES],
         ),
     )
-    report = campaigns.write_report(folder).read_text()
+    report = write_report(folder).read_text()
     for planned in wiggle_campaign.FIGURES:
         figure = folder / "figures" / f"made_up-{planned.name}.png"
         assert figure.stat().st_size > 10_000

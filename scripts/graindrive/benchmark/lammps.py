@@ -27,18 +27,8 @@ group free type 1
 neighbor {skin} bin
 neigh_modify delay 0 every 1 check yes exclude group wall wall
 {pair}
-pair_coeff * *
-timestep {dt}
-fix weight free gravity {gravity} vector 0 -1 0
 fix move free nve/sphere disc
 {walls}
-fix plane all enforce2d
-compute slide free ke
-compute turn free erotate/sphere
-thermo {steps}
-thermo_style custom step c_slide c_turn
-thermo_modify lost error norm no format float %.15g
-run {steps}
 """
 
 
@@ -90,12 +80,9 @@ def run(a_scene, folder, steps, ranks):
         density=float(a_scene["density"]),
         skin=peer_files.skin(a_scene),
         pair=pair_style(a_scene),
-        dt=float(a_scene["dt"]),
-        gravity=float(a_scene["gravity"]),
         walls=fixes,
         masses=masses,
-        steps=steps,
     )
     launcher = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
-    timing = peer_files.run([*launcher, "lmp"], text, folder, "LAMMPS")
+    timing = peer_files.run([*launcher, "lmp"], a_scene, text, steps, folder, "LAMMPS")
     return dict(wall=timing["wall"], cpu=timing["cpu"], energy=timing["slide"] + 1.25 * timing["turn"])

@@ -24,18 +24,8 @@ fix poisson all property/global poissonsRatio peratomtype {poisson} {poisson} {p
 fix bounce all property/global coefficientRestitution peratomtypepair 3 {restitution}
 fix rub all property/global coefficientFriction peratomtypepair 3 {friction}
 pair_style gran model hertz tangential history
-pair_coeff * *
-timestep {dt}
-fix weight free gravity {gravity} vector 0 -1 0
 fix move free nve/sphere
 fix rest wall freeze
-fix plane all enforce2d
-compute slide free ke
-compute turn free erotate/sphere
-thermo {steps}
-thermo_style custom step c_slide c_turn
-thermo_modify lost error norm no format float %.15g
-run {steps}
 """
 
 
@@ -59,9 +49,6 @@ def run(a_scene, folder, steps):
         poisson=poisson,
         restitution=" ".join([str(restitution)] * 9),
         friction=" ".join([str(float(a_scene["friction"]))] * 9),
-        dt=float(a_scene["dt"]),
-        gravity=float(a_scene["gravity"]),
-        steps=steps,
     )
-    timing = peer_files.run(["liggghts"], text, folder, "LIGGGHTS")
+    timing = peer_files.run(["liggghts"], a_scene, text, steps, folder, "LIGGGHTS")
     return dict(wall=timing["wall"], cpu=timing["cpu"], energy=timing["slide"] + timing["turn"])

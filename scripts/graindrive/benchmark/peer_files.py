@@ -6,6 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
+# What follows the settings of either peer: gravity, the plane, and the energies that its log is asked for.
+STEPS = """pair_coeff * *
+timestep {dt}
+fix weight free gravity {gravity} vector 0 -1 0
+fix plane all enforce2d
+compute slide free ke
+compute turn free erotate/sphere
+thermo {steps}
+thermo_style custom step c_slide c_turn
+thermo_modify lost error norm no format float %.15g
+run {steps}
+"""
+
 
 def skin(a_scene):
     """Return the neighbour lists' skin: a tenth of a median diameter."""
@@ -30,9 +43,10 @@ def write_data(a_scene, folder, size_of):
     (Path(folder) / "scene.data").write_text("\n".join(lines) + "\n")
 
 
-def run(command, text, folder, name):
-    """Run an input; return wall and processor time [s] and the last thermo row's two energies, slide and turn."""
-    (Path(folder) / "scene.in").write_text(text)
+def run(command, a_scene, settings, steps, folder, name):
+    """Run an input of `settings` and STEPS; return wall and processor time [s], and the last two energies, slide and turn."""
+    last = STEPS.format(dt=float(a_scene["dt"]), gravity=float(a_scene["gravity"]), steps=steps)
+    (Path(folder) / "scene.in").write_text(settings + last)
     done = subprocess.run(
         [*command, "-in", "scene.in", "-log", "scene.log", "-screen", "none"],
         cwd=folder,

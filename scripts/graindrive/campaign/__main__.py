@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import signals
 from ..errors import UsageError
 from ..headless import guarded
-from ..postproc import campaigns
+from ..postproc.campaign.report import write_report
 from . import cost, execution
 from .plan import read_plan
 
@@ -49,7 +49,7 @@ def campaign(options):
     with signals.handled(), execution.opened(folder, plan):
         if not options.report:
             make_runs(folder, plan, options)
-        report = campaigns.write_report(folder)
+        report = write_report(folder)
     print(f"{NAME}: see {report}", file=sys.stderr)
     return tell_failures(folder, plan)
 

@@ -1,7 +1,7 @@
 """The plan of a campaign: from a YAML of values to checked, named runs; nothing is run or written here.
 
     study: magnus                    # of studies/, or a file beside this one
-    report: magnus                   # graindrive.postproc.magnus_campaign; may be left out
+    report: magnus                   # graindrive.postproc.magnus.campaign; may be left out
     common: {mu: 0.5, width: 100}    # keys of the study, for all runs
     sweeps:                          # each a grid, or a list of grids: lists of values are crossed
       speed: {phi: [0.352, 0.818], v0: [0.5, 1, 2], seed: [1, 2]}
@@ -148,7 +148,7 @@ def check_report(path, report, sweeps):
         return
     module = report_module(report)
     if module is None:
-        raise UsageError(f"{path}: there is no report '{one_line(report)}': no graindrive.postproc.{report}_campaign")
+        raise UsageError(f"{path}: there is no report '{one_line(report)}': no graindrive.postproc.{report}.campaign")
     for sweep in sweeps:
         if sweep not in module.SWEEPS:
             hint = nearest(sweep, module.SWEEPS, "did you mean ", "? ")
@@ -159,9 +159,10 @@ def check_report(path, report, sweeps):
 
 def report_module(report):
     """Return the module of the report named `report`; None if there is none."""
-    name = f"graindrive.postproc.{report}_campaign"
-    known = str(report).isidentifier() and importlib.util.find_spec(name)
-    return importlib.import_module(name) if known else None
+    package = f"graindrive.postproc.{report}"
+    known = str(report).isidentifier() and importlib.util.find_spec(package)
+    inside = known and known.submodule_search_locations and importlib.util.find_spec(f"{package}.campaign")
+    return importlib.import_module(f"{package}.campaign") if inside else None
 
 
 def declared(study_file):

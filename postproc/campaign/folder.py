@@ -1,6 +1,5 @@
-"""A campaign's folder: its runs as one table, and the report that its study's figures and verdicts make of them."""
+"""A campaign's folder: its plan, and its runs as one table."""
 
-import importlib
 import json
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,8 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from . import results
-from .reader import Run, RunError
+from ..reader import Run, RunError
 
 FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
 NOT_IN_TABLE = ("out", "resume", "redo", "vtk")  # keys of a study that say nothing of its result
@@ -74,17 +72,3 @@ class Campaign:
     def sweep(self, name):
         """Return the rows of the table that belong to a sweep."""
         return self.table[[name in sweeps.split() for sweeps in self.table["sweeps"]]]
-
-
-def write_report(folder):
-    """Write `table.csv` and, where the campaign has a report, its figures and `report.md`; return the last written."""
-    campaign = Campaign.of(folder)
-    table = campaign.folder / "table.csv"
-    results.write_text(table, campaign.table.to_csv(index=False))
-    if not campaign.plan["report"] or campaign.table.empty:
-        return table
-    report = importlib.import_module(f".{campaign.plan['report']}_campaign", __package__)
-    (campaign.folder / "figures").mkdir(exist_ok=True)
-    sections = report.report(campaign)
-    results.write_text(campaign.folder / "report.md", results.as_markdown(campaign, report.TITLE, sections))
-    return campaign.folder / "report.md"

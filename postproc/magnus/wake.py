@@ -7,10 +7,10 @@ All in the intruder's frame, V along +x and omega > 0, lengths in d, y positive 
 import numpy as np
 from scipy.ndimage import uniform_filter
 
-from .magnus import fields_of
-from .magnus_runs import at, names, over_repeats
-from .measured import UNKNOWN
-from .verdicts import Claim, above, below
+from ..campaign.runs import at, names, over_repeats
+from ..campaign.verdicts import Claim, above, below
+from ..measured import UNKNOWN
+from .figure import fields_of
 
 INTRUDER_RADIUS = 2.5  # [d]
 SOURCE = "Fig. 7"

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import magnus_model
-from .statistics import block_mean, ratio_mean, steady_start
+from ..statistics import block_mean, ratio_mean, steady_start
+from . import model
 
 # Series of the Magnus study: block means of the forces of the grains on the body, and variances within a block.
 UNITS = dict(
@@ -102,8 +102,8 @@ def models(summary, mu):
     """Return L/D by Eqs 9 and 15 of the model, the latter with the measured kappa and its error."""
     slope = mu + 1 / mu if mu > 0 else 0.0
     return dict(
-        model_symmetric=magnus_model.symmetric_lift_to_drag(mu),
-        model_kappa=float(magnus_model.saturated_lift_to_drag(summary["kappa"], mu)),
+        model_symmetric=model.symmetric_lift_to_drag(mu),
+        model_kappa=float(model.saturated_lift_to_drag(summary["kappa"], mu)),
         model_kappa_err=summary["kappa_err"] * slope,
     )
 

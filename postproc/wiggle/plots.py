@@ -1,16 +1,18 @@
 """The figures of a wiggle campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
 
+import itertools
+
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.patches import Polygon
 
-from . import figures
-from . import wiggle_runs as runs
-from .figures import BLACK, GREY, VERMILLION
-from .magnus_plots import COLOURS, MARKERS, canvas, draw_points, share_y
-from .magnus_runs import curve, quantity
-from .wiggle_claims import OBSERVED, TABLE_1_AMPLITUDE, scenes_of
-from .wiggle_runs import RATE, by_shape, title
+from .. import figures
+from ..campaign.plots import COLOURS, canvas, draw_points, look, share_y
+from ..campaign.runs import curve, quantity
+from ..figures import BLACK, GREY, VERMILLION
+from . import runs
+from .claims import OBSERVED, TABLE_1_AMPLITUDE, scenes_of
+from .runs import RATE, by_shape, title
 
 RATE_LABEL = r"$V_y$  [$\sqrt{gd}$]"
 PERIOD_LABEL = r"$T$  [$\sqrt{d/g}$]"
@@ -26,19 +28,20 @@ def panels(groups, claims, *, height=1.9, columns=3):
     return figure, axes.ravel()[: len(groups)]
 
 
-def look(k, label):
-    """Return colour, marker and label of the k-th curve of a panel."""
-    return dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], label=label)
+def lines_by_shape(rows, claims, key, label, points_of, xlabel, *, height=1.9):
+    """Return (figure, axes, groups): a panel for each shape, in it `points_of(its rows)` for each value of `key`."""
+    groups = list(by_shape(rows))
+    figure, axes = panels(groups, claims, height=height)
+    for panel, (shape, group) in zip(axes, groups):
+        for k, (value, of_one) in enumerate(group.groupby(key, sort=True)):
+            draw_points(panel, *points_of(of_one), **look(k, label.format(value)))
+        name_panel(panel, shape, xlabel)
+    return figure, axes, groups
 
 
 def against_period(campaign, rows, claims):
     """Fig. 5: V_y against T, a panel for each shape, a line for each amplitude, with the cavity model."""
-    groups = list(by_shape(rows))
-    figure, axes = panels(groups, claims)
-    for panel, (shape, group) in zip(axes, groups):
-        for k, (amplitude, of_one) in enumerate(group.groupby("amplitude", sort=True)):
-            draw_points(panel, *runs.rates(of_one), **look(k, f"A = {amplitude:g} d"))
-        name_panel(panel, shape, PERIOD_LABEL)
+    figure, axes, groups = lines_by_shape(rows, claims, "amplitude", "A = {:g} d", runs.rates, PERIOD_LABEL)
     share_y(axes)
     for panel, (shape, group) in zip(axes, groups):  # last, in the range of the data, which it leaves
         draw_model(panel, runs.model_of(group), group["period"].max())
@@ -101,12 +104,11 @@ def colour_map(campaign, rows, claims):
 
 def against_friction(campaign, rows, claims):
     """Fig. 6: V_y against mu, a panel for each shape, a line for each period."""
-    groups = list(by_shape(rows))
-    figure, axes = panels(groups, claims)
-    for panel, (shape, group) in zip(axes, groups):
-        for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
-            draw_points(panel, *curve(of_one, "mu", RATE), **look(k, f"T = {period:g}"))
-        name_panel(panel, shape, "friction coefficient μ")
+
+    def points_of(of_one):
+        return curve(of_one, "mu", RATE)
+
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "friction coefficient μ")
     share_y(axes)
     axes[0].legend()
     return figure
@@ -114,15 +116,14 @@ def against_friction(campaign, rows, claims):
 
 def against_phase(campaign, rows, claims):
     """Fig. 8: V_y by phase, a panel for each shape, a line for each period."""
-    groups = list(by_shape(rows))
-    figure, axes = panels(groups, claims)
-    for panel, (shape, group) in zip(axes, groups):
-        for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
-            phases, points = runs.phase_curve(campaign, of_one)
-            draw_points(panel, 20 * phases, points, **look(k, f"T = {period:g}"))
-        for turn in (5, 15):
-            panel.axvline(turn, color=GREY, linewidth=0.5, linestyle=":")
-        name_panel(panel, shape, "phase 10φ/π")
+
+    def points_of(of_one):
+        phases, points = runs.phase_curve(campaign, of_one)
+        return 20 * phases, points
+
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "phase 10φ/π")
+    for panel, turn in itertools.product(axes, (5, 15)):
+        panel.axvline(turn, color=GREY, linewidth=0.5, linestyle=":")
     axes[0].legend()
     return figure
 
@@ -143,12 +144,7 @@ def heights(campaign, rows, claims):
 
 def of_drives(campaign, rows, claims):
     """V_y against T for both readings of the drive, a panel for each shape."""
-    groups = list(by_shape(rows))
-    figure, axes = panels(groups, claims, height=2.4)
-    for panel, (shape, group) in zip(axes, groups):
-        for k, (form, of_one) in enumerate(group.groupby("drive", sort=True)):
-            draw_points(panel, *runs.rates(of_one), **look(k, f"A is of the {form}"))
-        name_panel(panel, shape, PERIOD_LABEL)
+    figure, axes, _ = lines_by_shape(rows, claims, "drive", "A is of the {}", runs.rates, PERIOD_LABEL, height=2.4)
     axes[0].legend()
     return figure
 

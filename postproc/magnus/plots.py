@@ -2,45 +2,14 @@
 
 import numpy as np
 
-from . import fields, figures
-from .figures import BLACK, BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, plt
-from .magnus_claims import by_phi, over_no_spin
-from .magnus_model import saturated_lift_to_drag
-from .magnus_runs import at, by_angle, curve, fields_over_repeats, quantity
-from .magnus_wake import INTRUDER_RADIUS
-from .verdicts import Verdict
-
-COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, BLACK)
-MARKERS = "osD^vP"
-LINE_INCHES = 0.135  # height of a line of the caption
-VERDICT_COLOURS = {Verdict.REPRODUCED: GREEN, Verdict.NOT_REPRODUCED: VERMILLION, Verdict.NOT_DECIDED: "#666666"}
-
-
-def canvas(rows, columns, claims, *, width, height):
-    """Return (figure, axes (rows, columns)) with room for the claims below; `width`, `height` of the axes in inches."""
-    room = LINE_INCHES * (len(claims) + 1.5)
-    figure, axes = plt.subplots(rows, columns, figsize=(width, height + room), squeeze=False)
-    figure.set_layout_engine("constrained", rect=(0, room / (height + room), 1, height / (height + room)))
-    for line, claim in enumerate(claims):
-        y = LINE_INCHES * (len(claims) - line) / (height + room)
-        text, colour = f"{claim.text} (paper: {claim.expected}): {claim.number}", VERDICT_COLOURS[claim.verdict]
-        figure.text(0.99, y, claim.verdict.value, fontsize=6, color=colour, weight="bold", ha="right")
-        figure.text(0.01, y, text, fontsize=6)
-    return figure, axes
-
-
-def draw_points(axes, x, points, **options):
-    """Draw `Measured` points with error bars of one standard error."""
-    values, errors = np.array([(m.value, m.error) for m in points]).reshape(-1, 2).T
-    errors = np.where(np.isfinite(errors), errors, 0)
-    axes.errorbar(x, values, errors, **{"markersize": 3, "capsize": 1.5, "linewidth": 0.7, **options})
-
-
-def draw_curves(axes, rows, by, key, name, label):
-    """Draw a quantity against `key`, one line for each value of `by`."""
-    for k, (value, group) in enumerate(rows.groupby(by, sort=True)):
-        x, points = curve(group, key, name)
-        draw_points(axes, x, points, color=COLOURS[k % 6], marker=MARKERS[k % 6], label=label.format(value))
+from .. import fields, figures
+from ..campaign.plots import COLOURS, canvas, draw_curves, draw_points, look, share_y
+from ..campaign.runs import at, curve, quantity
+from ..figures import BLACK, GREY, plt
+from .claims import by_phi, over_no_spin
+from .model import saturated_lift_to_drag
+from .runs import by_angle, fields_over_repeats
+from .wake import INTRUDER_RADIUS
 
 
 def against_speed(campaign, rows, claims):
@@ -88,13 +57,6 @@ def lift_against_spin(campaign, rows, claims):
     return figure
 
 
-def share_y(axes):
-    """Give all axes the range that holds them all."""
-    low, high = zip(*(panel.get_ylim() for panel in axes))
-    for panel in axes:
-        panel.set_ylim(min(low), max(high))
-
-
 def drag_against_spin(campaign, rows, claims):
     """Fig. 5: D_Ω/D_0 and N_Ω/N_0 against Ω."""
     groups = list(by_phi(rows))
@@ -104,7 +66,7 @@ def drag_against_spin(campaign, rows, claims):
             for k, (v0, one_speed) in enumerate(group.groupby("v0", sort=True)):
                 spins = sorted(one_speed["spin_ratio"].unique())
                 points = [over_no_spin(one_speed, name, spin) for spin in spins]
-                draw_points(panel, spins, points, color=COLOURS[k % 6], marker=MARKERS[k % 6], label=f"V0 = {v0:g} m/s")
+                draw_points(panel, spins, points, **look(k, f"V0 = {v0:g} m/s"))
             panel.axhline(1, color=GREY, linewidth=0.6)
             spin_axis(panel, rows["spin_ratio"].max())
         column[0].set_title(f"Φ = {phi:g}")
@@ -122,11 +84,11 @@ def forces_by_angle(campaign, rows, claims):
         found = by_angle(campaign, group)
         theta, names = found[0].theta, ("normal", "tangential", "contacts")
         normal, tangential, contacts = (np.mean([getattr(one, name) for one in found], axis=0) for name in names)
-        look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], markersize=2.5, linewidth=0.7, label=f"Ω = {spin:g}")
-        left.plot(theta / np.pi, normal / still, **look)
+        style = dict(look(k, f"Ω = {spin:g}"), markersize=2.5, linewidth=0.7)
+        left.plot(theta / np.pi, normal / still, **style)
         busy = normal > 1e-3 * normal.max()
-        middle.plot(theta[busy] / np.pi, tangential[busy] / (group["mu"].iloc[0] * normal[busy]), **look)
-        right.plot(theta / np.pi, contacts / contacts.sum(), **look)
+        middle.plot(theta[busy] / np.pi, tangential[busy] / (group["mu"].iloc[0] * normal[busy]), **style)
+        right.plot(theta / np.pi, contacts / contacts.sum(), **style)
     for panel, label in ((left, "F$_N$/D$_0$"), (middle, "F$_T$/(μ F$_N$)"), (right, "N$_θ$/N")):
         panel.set(xlabel="θ/π", ylabel=label, xlim=(-1, 1))
         for side in (-0.5, 0.5):
@@ -163,8 +125,7 @@ def lift_against_friction(campaign, rows, claims):
     axes.plot([0, largest], [0, largest], "--", color=BLACK, linewidth=0.8, label="Eq. 9: L$_∞$/D$_∞$ = μ")
     axes.plot([], [], color=GREY, linewidth=0.8, label="Eq. 15, measured κ")
     for k, (phi, group) in enumerate(by_phi(rows)):
-        look = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="", label=f"Φ = {phi:g}")
-        draw_points(axes, *curve(group, "mu", "lift_to_drag"), **look)
+        draw_points(axes, *curve(group, "mu", "lift_to_drag"), linestyle="", **look(k, f"Φ = {phi:g}"))
         mu, kappa = curve(group[group["mu"] > 0], "mu", "kappa")
         model = [saturated_lift_to_drag(found.value, m) for m, found in zip(mu, kappa)]
         axes.plot(mu, model, color=COLOURS[k % 6], linewidth=0.8)

@@ -1,47 +1,10 @@
-"""What the report of a Magnus campaign takes from its runs: quantities over repeats, distributions by angle, fields."""
+"""What the report of a Magnus campaign takes from its runs: distributions by angle, and fields over repeats."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .magnus import fields_of
-from .measured import Measured, mean_of
-
-
-def quantity(rows, name):
-    """Return a quantity of summary.json, averaged over the rows of a table (repeats), as `Measured`."""
-    errors = rows[f"{name}_err"] if f"{name}_err" in rows else [np.nan] * len(rows)
-    pairs = [(v, e) for v, e in zip(rows[name], errors)] if name in rows else []
-    return mean_of([Measured(float(v), as_error(e)) for v, e in pairs if is_number(v)])
-
-
-def is_number(value):
-    """True for a finite number; a table holds None or NaN where a run has no value."""
-    return value is not None and bool(np.isfinite(float(value)))
-
-
-def as_error(value):
-    """Return a standard error out of a table, NaN where there is none."""
-    return float(value) if is_number(value) else float("nan")
-
-
-def curve(rows, key, name):
-    """Return (values of `key`, rising, the quantity `name` at each as `Measured`)."""
-    groups = list(rows.groupby(key, sort=True))
-    return np.array([value for value, _ in groups], dtype=float), [quantity(group, name) for _, group in groups]
-
-
-def at(rows, **keys):
-    """Return the rows whose keys have these values."""
-    chosen = np.ones(len(rows), dtype=bool)
-    for key, value in keys.items():
-        chosen &= np.isclose(rows[key].astype(float), value)
-    return rows[chosen]
-
-
-def names(rows):
-    """Return the names of the runs."""
-    return tuple(rows["run"])
+from .figure import fields_of
 
 
 # ---- distributions by angle ------------------------------------------------------------------------------------------
@@ -75,11 +38,6 @@ def by_angle(campaign, rows):
         ByAngle(a["theta"], a["normal"], a["normal_err"], -a["tangential"], a["tangential_err"], a["contacts_by_angle"])
         for a in found
     ]
-
-
-def over_repeats(values):
-    """Return the mean over repeats (runs,) of a number that each run gives without an error, as `Measured`."""
-    return mean_of([Measured(float(v), float("nan")) for v in values])
 
 
 # ---- fields ----------------------------------------------------------------------------------------------------------

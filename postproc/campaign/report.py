@@ -1,28 +1,12 @@
-"""Reports of campaigns as Markdown, and `studies/RESULTS.md` made of them: `python3 -m graindrive.postproc.results FOLDER …`.
+"""The report of a campaign as Markdown: what was run at what cost, then figures with captions, claims and verdicts."""
 
-RESULTS.md keeps one section per campaign, between two comments that name it. Publishing a campaign replaces its
-section and its figures in studies/figures/, and leaves the others as they are.
-"""
-
+import importlib
 import os
-import re
-import shutil
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
-from . import figures
-from .reader import RunError
+from .. import figures
+from .folder import Campaign
 from .verdicts import tally
-
-HEADING = """# Results
-
-What campaigns of this checkout measured, beside what the papers say. Made by `scripts/results FOLDER …` from the reports
-that `scripts/campaign` leaves; not written by hand. Errors are standard errors. A verdict follows from the rule beside it,
-σ being the standard error; a measurement that cannot tell a claim from its opposite is *not decided*.
-"""
-SECTION = "<!-- campaign {name} -->\n{text}\n<!-- end of {name} -->\n"
-SECTIONS = re.compile(r"<!-- campaign (?P<name>\S+) -->\n(?P<text>.*?)\n<!-- end of (?P=name) -->\n", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -59,14 +43,30 @@ class PlannedFigure:
         return Section(self.title, self.name, self.caption, claims)
 
 
+def write_report(folder):
+    """Write `table.csv` and, where the campaign has a report, its figures and `report.md`; return the last written."""
+    campaign = Campaign.of(folder)
+    table = campaign.folder / "table.csv"
+    write_text(table, campaign.table.to_csv(index=False))
+    if not campaign.plan["report"] or campaign.table.empty:
+        return table
+    study = importlib.import_module(f"..{campaign.plan['report']}.campaign", __package__)
+    (campaign.folder / "figures").mkdir(exist_ok=True)
+    write_text(campaign.folder / "report.md", as_markdown(campaign, study.TITLE, sections_of(campaign, study.FIGURES)))
+    return campaign.folder / "report.md"
+
+
+def sections_of(campaign, planned_figures):
+    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
+    with figures.plt.rc_context(figures.STYLE):
+        return [planned.made(campaign) for planned in planned_figures if not campaign.sweep(planned.sweep).empty]
+
+
 def write_text(path, text):
     """Write a text file in one step: a reader sees the old one or the new one."""
     temporary = path.with_name(f".{path.name}.tmp")
     temporary.write_text(text, encoding="utf-8")
     os.replace(temporary, path)
-
-
-# ---- one campaign ----------------------------------------------------------------------------------------------------
 
 
 def as_markdown(campaign, title, sections):
@@ -133,63 +133,3 @@ def claim_row(table, claim):
     cells = [claim.text, claim.source, claim.expected, claim.number, claim.rule, verdict, claim.settings]
     cells.append(f"{len(runs)}, {core_seconds(runs):.0f}" if len(runs) else "none")
     return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
-
-
-# ---- all campaigns ---------------------------------------------------------------------------------------------------
-
-
-def publish(folders, studies):
-    """Put the reports in campaign `folders` into `studies`/RESULTS.md and their PNG figures into `studies`/figures."""
-    target = Path(studies) / "RESULTS.md"
-    sections = stored_sections(target)
-    for folder in map(Path, folders):
-        name, text = report_of(folder)
-        sections[name] = text
-        copy_figures(folder, Path(studies) / "figures")
-    body = "\n".join(SECTION.format(name=name, text=text) for name, text in sorted(sections.items()))
-    write_text(target, f"{HEADING}\n{body}")
-    return target
-
-
-def report_of(folder):
-    """Return (campaign's name, Markdown) of the report in a campaign's folder; RunError if there is none."""
-    from .campaigns import Campaign
-
-    try:
-        return Campaign.of(folder).plan["name"], (folder / "report.md").read_text(encoding="utf-8").strip()
-    except FileNotFoundError:
-        raise RunError(
-            f"{folder} holds no report.md: call scripts/campaign first, with a `report:` in its file"
-        ) from None
-
-
-def stored_sections(target):
-    """Return {campaign's name: Markdown} of the sections of RESULTS.md; empty if there is none yet."""
-    text = target.read_text(encoding="utf-8") if target.exists() else ""
-    return {match["name"]: match["text"] for match in SECTIONS.finditer(text)}
-
-
-def copy_figures(folder, target):
-    """Copy the PNG figures of a campaign, each in one step."""
-    target.mkdir(exist_ok=True)
-    for source in sorted((folder / "figures").glob("*.png")):
-        temporary = target / f".{source.name}.tmp"
-        shutil.copyfile(source, temporary)
-        os.replace(temporary, target / source.name)
-
-
-def main(arguments):
-    """Publish the campaigns that the arguments name; return the exit code: 0, or 2 after one line on stderr."""
-    if not arguments or {"help", "-h", "--help"} & set(arguments):
-        print("usage: scripts/results CAMPAIGN-FOLDER …   (puts their reports into studies/RESULTS.md)")
-        return 0 if arguments else 2
-    try:
-        print(f"graindrive: see {publish(arguments, Path(__file__).resolve().parents[1] / 'studies')}", file=sys.stderr)
-        return 0
-    except (RunError, OSError) as error:
-        print(f"graindrive.postproc.results: error: {error}", file=sys.stderr)
-        return 2
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -3,41 +3,28 @@
 Where the paper says "roughly", "almost" or "weakly" a tolerance is our reading of it; it stands in the claim's rule.
 """
 
+from functools import partial
+
 import numpy as np
 
-from .magnus_model import saturated_lift_to_drag
-from .magnus_runs import at, by_angle, curve, names, over_repeats, quantity
-from .measured import UNKNOWN, Measured, exactly, mean_of, polynomial_through, power_of, steepest_place
-from .verdicts import Agrees, Claim, above, below
+from ..campaign.claims import claim_on
+from ..campaign.runs import at, curve, over_repeats, quantity
+from ..campaign.verdicts import Agrees, above, below
+from ..measured import UNKNOWN, Measured, exactly, mean_of, polynomial_through, power_of, steepest_place
+from .model import saturated_lift_to_drag
+from .runs import by_angle
 
 DILUTE, DENSE = 0.5, 0.8  # area fractions below and above which the paper speaks of dilute and dense systems
 PRINTED_KAPPA = {0.352: 0.95, 0.818: 0.90}  # section IV, at mu = 0.5
 KAPPA_ROUNDING = 0.005
+
+claim = partial(claim_on, dict(phi=("Φ", ""), v0=("V0", " m/s"), spin_ratio=("Ω", ""), mu=("μ", "")))
 
 
 def by_phi(rows):
     """Yield (phi, its rows) for the area fractions of a sweep."""
     for phi, group in rows.groupby("phi", sort=True):
         yield float(phi), group
-
-
-def span(rows, key):
-    """Return the values of a key in words: "0, 10", or "0.5 to 2" where there are more than three."""
-    found = sorted(rows[key].unique())
-    return ", ".join(f"{v:g}" for v in found) if len(found) <= 3 else f"{found[0]:g} to {found[-1]:g}"
-
-
-def settings(rows):
-    """Return in words of which runs a claim is."""
-    if rows.empty:
-        return ""
-    names_ = (("Φ", "phi", ""), ("V0", "v0", " m/s"), ("Ω", "spin_ratio", ""), ("μ", "mu", ""))
-    return ", ".join(f"{symbol} {span(rows, key)}{unit}" for symbol, key, unit in names_)
-
-
-def claim(rows, text, source, expected, measured, rule):
-    """Return a `Claim` on the runs of `rows`."""
-    return Claim(text, source, expected, measured, rule, settings(rows), names(rows))
 
 
 # ---- Fig. 2: no spin -------------------------------------------------------------------------------------------------

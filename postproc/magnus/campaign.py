@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from . import figures, magnus_plots
-from .magnus_claims import angle_claims, drag_claims, friction_claims, lift_claims, speed_claims
-from .magnus_wake import wake_claims
-from .results import PlannedFigure
+from ..campaign.report import PlannedFigure
+from . import plots
+from .claims import angle_claims, drag_claims, friction_claims, lift_claims, speed_claims
+from .wake import wake_claims
 
 TITLE = "Magnus effect: drag and lift on a spinning disk"
 SWEEPS = {
@@ -17,12 +17,6 @@ SWEEPS = {
 }
 RATES = ((0.352, 0.818), (450e6, 180e6))  # area fraction, particle-steps per second of one core (README)
 TIME_STEP, DIAMETER = 2e-6, 0.02  # of the study [s], [m]
-
-
-def report(campaign):
-    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
-    with figures.plt.rc_context(figures.STYLE):
-        return [planned.made(campaign) for planned in FIGURES if not campaign.sweep(planned.sweep).empty]
 
 
 def expected_core_seconds(parameters):
@@ -45,7 +39,7 @@ FIGURES = (
         "Mean drag and mean number of contacts of an intruder without spin against its speed. Paper: D ∝ V0², N linear when"
         " dilute.",
         speed_claims,
-        magnus_plots.against_speed,
+        plots.against_speed,
     ),
     PlannedFigure(
         "fig3",
@@ -54,7 +48,7 @@ FIGURES = (
         "Lift over drag against the spin ratio Ω = ωR/V0; lift counts along −ω×V. Paper: zero at Ω = 0, steepest near 1,"
         " then flat.",
         lift_claims,
-        magnus_plots.lift_against_spin,
+        plots.lift_against_spin,
     ),
     PlannedFigure(
         "fig5",
@@ -63,7 +57,7 @@ FIGURES = (
         "Drag and contacts over their values without spin. Paper: drag constant when dilute, rising when dense; fewer"
         " contacts at large Ω.",
         drag_claims,
-        magnus_plots.drag_against_spin,
+        plots.drag_against_spin,
     ),
     PlannedFigure(
         "fig6",
@@ -73,7 +67,7 @@ FIGURES = (
         " counter-clockwise for ω > 0 and F_T > 0 opposes the spin. Paper: contacts in front only, all of them slipping at"
         " large Ω.",
         angle_claims,
-        magnus_plots.forces_by_angle,
+        plots.forces_by_angle,
     ),
     PlannedFigure(
         "fig7",
@@ -83,7 +77,7 @@ FIGURES = (
         " the wake has an empty core, widens and bends with spin; grains are hottest on the advancing side at Ω = 10, on"
         " the retreating side at Ω = 1.",
         wake_claims,
-        magnus_plots.around_intruder,
+        plots.around_intruder,
     ),
     PlannedFigure(
         "fig8",
@@ -92,6 +86,6 @@ FIGURES = (
         "Saturated lift over drag against friction, with the model: Eq. 9 (dilute) and Eq. 15 with the measured"
         " κ = ΣF_N cos θ/D∞.",
         friction_claims,
-        magnus_plots.lift_against_friction,
+        plots.lift_against_friction,
     ),
 )

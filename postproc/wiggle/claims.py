@@ -3,37 +3,23 @@
 Where the paper says "negligible" or "mostly" a tolerance is our reading of it; it stands in the claim's rule.
 """
 
+from functools import partial
+
 import numpy as np
 
-from . import wiggle_runs as runs
-from .magnus_runs import curve, names, over_repeats, quantity
-from .measured import UNKNOWN, polynomial_through
-from .verdicts import Agrees, Claim, above, below
-from .wiggle_runs import RATE, by_shape, of_shape
+from ..campaign.claims import claim_on
+from ..campaign.runs import curve, over_repeats, quantity
+from ..campaign.verdicts import Agrees, above, below
+from ..measured import UNKNOWN, polynomial_through
+from . import runs
+from .runs import RATE, by_shape, of_shape
 
 RISE_ORDER = ("disk", "tall", "square", "wide", "triangle")  # section 3.2
 OBSERVED = {"disk": (2.5, 3), "square": (3, 4), "tall": (3, 4), "wide": (2, 3), "triangle": (4, 5)}  # Table 1, A = 5 d
 TABLE_1_AMPLITUDE = 5.0
 SMALL_AMPLITUDE = 1.0  # up to which the paper sees no motion
 
-
-def settings(rows):
-    """Return in words of which runs a claim is."""
-    if rows.empty:
-        return ""
-    keys = (("A", "amplitude"), ("T", "period"), ("μ", "mu"))
-    return ", ".join([*dict.fromkeys(rows["shape"]), *(f"{symbol} {span(rows, key)}" for symbol, key in keys)])
-
-
-def span(rows, key):
-    """Return the values of a key in words: "0, 10", or "0.5 to 2" where there are more than three."""
-    found = sorted(rows[key].unique())
-    return ", ".join(f"{v:g}" for v in found) if len(found) <= 3 else f"{found[0]:g} to {found[-1]:g}"
-
-
-def claim(rows, text, source, expected, measured, rule):
-    """Return a `Claim` on the runs of `rows`."""
-    return Claim(text, source, expected, measured, rule, settings(rows), names(rows))
+claim = partial(claim_on, dict(shape=("", ""), amplitude=("A", ""), period=("T", ""), mu=("μ", "")))
 
 
 # ---- Fig. 5 and Table 1 ----------------------------------------------------------------------------------------------
@@ -140,28 +126,33 @@ def triangle_claims(rows):
 # ---- Figs. 6, 8, and what the paper leaves open ----------------------------------------------------------------------
 
 
+def by_shape_and_period(rows):
+    """Yield ("shape, T period", its rows)."""
+    for shape, of_one in by_shape(rows):
+        for period, group in of_one.groupby("period"):
+            yield f"{shape}, T {period:g}", group
+
+
 def friction_claims(_campaign, rows):
     """V_y grows with friction: the slope of V_y against mu, for each shape and period."""
     claims = []
-    for shape, of_one in by_shape(rows):
-        for period, group in of_one.groupby("period"):
-            slope = polynomial_through(*curve(group, "mu", RATE), 1)[0]
-            text = f"{shape}, T {period:g}: friction speeds the rise; slope of V_y against μ"
-            claims.append(claim(group, text, "Fig. 6", "> 0", slope, above(0)))
+    for where, group in by_shape_and_period(rows):
+        slope = polynomial_through(*curve(group, "mu", RATE), 1)[0]
+        text = f"{where}: friction speeds the rise; slope of V_y against μ"
+        claims.append(claim(group, text, "Fig. 6", "> 0", slope, above(0)))
     return claims
 
 
 def phase_claims(campaign, rows):
     """The disk climbs on its way out and not on its way back, twice a cycle."""
     claims = []
-    for shape, of_one in by_shape(rows):
-        for period, group in of_one.groupby("period"):
-            _, points = runs.phase_curve(campaign, group)
-            quarter = len(points) // 4
-            first, second, third, fourth = (runs.mean_over(points[k * quarter : (k + 1) * quarter]) for k in range(4))
-            gained = runs.mean_over([first, third]) - runs.mean_over([second, fourth])
-            text = f"{shape}, T {period:g}: it climbs while it moves out; V_y moving out less V_y moving back"
-            claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", gained, above(0)))
+    for where, group in by_shape_and_period(rows):
+        _, points = runs.phase_curve(campaign, group)
+        quarter = len(points) // 4
+        first, second, third, fourth = (runs.mean_over(points[k * quarter : (k + 1) * quarter]) for k in range(4))
+        gained = runs.mean_over([first, third]) - runs.mean_over([second, fourth])
+        text = f"{where}: it climbs while it moves out; V_y moving out less V_y moving back"
+        claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", gained, above(0)))
     return claims
 
 

@@ -10,7 +10,7 @@ from enum import Enum
 
 import numpy as np
 
-from .measured import Measured
+from ..measured import Measured
 
 SIGMAS = 2
 

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter
 from matplotlib.cm import ScalarMappable
 
-from . import wiggle
-from .figures import STYLE
-from .reader import GRAIN, Run, RunError
+from ..figures import STYLE
+from ..reader import GRAIN, Run, RunError
+from . import figure as drawing
 
 FRAMES_PER_SECOND = 20
 FEWEST_FRAMES = 2
@@ -41,17 +41,17 @@ def film(path):
 def shoot(run, target):
     """Draw all frames of a run into the file `target`."""
     beds = [run.frame(k) for k in range(len(run.frame_names))]
-    norm = wiggle.speed_scale([bed.speed[bed.role == GRAIN] for bed in beds])
-    box = wiggle.view(run, beds[len(beds) // 2])
+    norm = drawing.speed_scale([bed.speed[bed.role == GRAIN] for bed in beds])
+    box = drawing.view(run, beds[len(beds) // 2])
     figure, axes = plt.subplots(figsize=picture_size(box), layout="constrained")
-    figure.suptitle(wiggle.title(run))
+    figure.suptitle(drawing.title(run))
     figure.colorbar(ScalarMappable(norm, "YlGnBu"), ax=axes, pad=0.01, extend="max", label=r"speed  [$\sqrt{gd}$]")
     writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
     try:
         with writer.saving(figure, str(target), DOTS_PER_INCH):
             for bed in beds:
                 axes.clear()
-                wiggle.draw_bed(axes, run, bed, box, norm)
+                drawing.draw_bed(axes, run, bed, box, norm)
                 writer.grab_frame()
     finally:
         plt.close(figure)

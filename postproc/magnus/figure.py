@@ -6,10 +6,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Circle, Polygon
 
-from . import fields
-from .figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, save
-from .magnus_forces import drag_and_lift
-from .reader import Run, RunError
+from .. import fields
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, save
+from ..reader import Run, RunError
+from .forces import drag_and_lift
 
 D = 0.02  # m, mean diameter of the grains
 

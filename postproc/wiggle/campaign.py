@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from . import figures, wiggle_claims, wiggle_plots
-from .results import PlannedFigure
+from ..campaign.report import PlannedFigure
+from . import claims, plots
 
 TITLE = "Wiggle: bodies shaken sideways that rise or sink"
 SWEEPS = {
@@ -17,12 +17,6 @@ SWEEPS = {
 RATE = 90e6  # particle-steps per second of one core (README)
 TIME_STEP = 1e-4  # of the study [sqrt(d/g)]
 GRAINS_PER_AREA = 0.84 / (np.pi / 4)  # of a settled bed [1/d^2]
-
-
-def report(campaign):
-    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
-    with figures.plt.rc_context(figures.STYLE):
-        return [planned.made(campaign) for planned in FIGURES if not campaign.sweep(planned.sweep).empty]
 
 
 def expected_core_seconds(parameters):
@@ -43,8 +37,8 @@ FIGURES = (
         "The scene: bed, lid and time step",
         "Rise rate in each scene beside the paper's own, the first (grey: one standard error). A lid weighs what the bed"
         " that is left out weighs.",
-        wiggle_claims.scene_claims,
-        wiggle_plots.of_scenes,
+        claims.scene_claims,
+        plots.of_scenes,
     ),
     PlannedFigure(
         "fig2",
@@ -52,7 +46,7 @@ FIGURES = (
         "Fig. 2: height against time",
         "Height over the start; one repeat each.",
         no_claims,
-        wiggle_plots.heights,
+        plots.heights,
     ),
     PlannedFigure(
         "fig5",
@@ -60,32 +54,32 @@ FIGURES = (
         "Fig. 5: rise rate against period",
         "Rise rate against period for each shape and amplitude, with the cavity model (dashed, Eq. 3.17; dotted, T_rise)."
         " Paper: nothing moves at A ≤ 1, sinking is fastest at T = 1, V_y has a maximum in T. The model leaves the panels.",
-        wiggle_claims.period_claims,
-        wiggle_plots.against_period,
+        claims.period_claims,
+        plots.against_period,
     ),
     PlannedFigure(
         "table1",
         "periods",
         "Table 1: the first period that rises",
         "At A = 5 d, between the last period that sinks and the first that rises.",
-        wiggle_claims.table_claims,
-        wiggle_plots.first_periods,
+        claims.table_claims,
+        plots.first_periods,
     ),
     PlannedFigure(
         "fig14",
         "periods",
         "Fig. 14: rise rate over period and amplitude",
         "Red rises, blue sinks. Paper: OS1 rises fastest, then OS3, OS2, OS4; OS5 sinks or barely moves.",
-        wiggle_claims.order_and_triangle_claims,
-        wiggle_plots.colour_map,
+        claims.order_and_triangle_claims,
+        plots.colour_map,
     ),
     PlannedFigure(
         "fig6",
         "friction",
         "Fig. 6: rise rate against friction",
         "Rise rate against the friction coefficient. Paper: it grows with friction and saturates at 0.5.",
-        wiggle_claims.friction_claims,
-        wiggle_plots.against_friction,
+        claims.friction_claims,
+        plots.against_friction,
     ),
     PlannedFigure(
         "fig8",
@@ -93,8 +87,8 @@ FIGURES = (
         "Fig. 8: rise rate by phase",
         "Rise rate in the twentieth parts of a cycle; dotted where the body turns. Paper: it climbs as it moves out and sinks"
         " as it moves back.",
-        wiggle_claims.phase_claims,
-        wiggle_plots.against_phase,
+        claims.phase_claims,
+        plots.against_phase,
     ),
     PlannedFigure(
         "fig9",
@@ -102,15 +96,15 @@ FIGURES = (
         "Figs. 9 to 11: fields around the body",
         "Area fraction, speed and pressure by phase, by Gaussian coarse-graining (w = 1 d, cut at 3 w). Paper: a wake behind,"
         " the pressure in front.",
-        wiggle_claims.field_claims,
-        wiggle_plots.around_body,
+        claims.field_claims,
+        plots.around_body,
     ),
     PlannedFigure(
         "drive",
         "drive",
         "Two readings of the drive",
         "The text gives the velocity as A sin(2πt/T) and uses A as the amplitude of the displacement.",
-        wiggle_claims.drive_claims,
-        wiggle_plots.of_drives,
+        claims.drive_claims,
+        plots.of_drives,
     ),
 )

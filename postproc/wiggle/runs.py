@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from . import fields
+from .. import fields
+from ..campaign.runs import at, curve
+from ..measured import UNKNOWN, Measured, mean_of
 from .cavity_model import CavityModel
-from .magnus_runs import at, curve
-from .measured import UNKNOWN, Measured, mean_of
 
 SHAPES = ("disk", "square", "tall", "wide", "triangle")  # OS1 to OS5
 TITLES = dict(zip(SHAPES, ("disk, OS1", "square, OS2", "tall rectangle, OS3", "wide rectangle, OS4", "triangle, OS5")))

@@ -1,0 +1,67 @@
+/// Python binding of GrainLoop: checkpoints.
+#include "engines/loop/checkpoint.hpp"
+#include "engines/loop/GrainLoop_py.hpp"
+
+namespace graindrive {
+namespace {
+
+py::object bytes(const std::string& text)
+{
+	return py::object(py::handle<>(PyBytes_FromStringAndSize(text.data(), Py_ssize_t(text.size()))));
+}
+
+std::string text_of(const py::object& bytes)
+{
+	char* start = nullptr;
+	Py_ssize_t size = 0;
+	if (PyBytes_AsStringAndSize(bytes.ptr(), &start, &size) != 0) py::throw_error_already_set();
+	return { start, std::size_t(size) };
+}
+
+void checkpoint(GrainLoop& loop, const std::string& path, const py::object& saved_scene)
+{
+	running(loop);
+	loop.save_checkpoint(path, text_of(saved_scene));
+}
+
+py::object saved_scene(const std::string& path)
+{
+	const bool by_yade = loop::contents_of(path) == loop::Contents::yade_scene;
+	return bytes(by_yade ? loop::read_checkpoint(path, loop::Contents::yade_scene) : GrainLoop::saved_scene(path));
+}
+
+void seal_scene(const std::string& path, const py::object& saved_scene)
+{
+	loop::write_checkpoint(path, text_of(saved_scene), loop::Contents::yade_scene);
+}
+
+void restore(GrainLoop& loop, const std::string& path)
+{
+	loop.scene = scene_of_yade();
+	loop.restore_checkpoint(path);
+}
+
+}  // namespace
+
+void bind_checkpoint(GrainLoopClass& cls)
+{
+	cls.def("checkpoint", checkpoint, (py::arg("path"), py::arg("saved_scene") = bytes("")),
+		"Write loop, bodies, drives and measures into one file; a run restored from it goes on to the last bit. Other engines\n"
+		"(PyRunner, recorders) are named in it, no more. saved_scene: bytes that O.save wrote, to go along; "
+		"graindrive.scene.save\n"
+		"does that. Raises RuntimeError with the system's reason if it cannot be written; an older file then stays.");
+	cls.def("restore", restore, (py::arg("path")),
+		"Go on from a checkpoint in the same scene, built anew or loaded: positions, velocities, O.iter and the state of drives "
+		"and\n"
+		"measures come from the file; threads, syncEvery, largestOverlap and bounds stay. Raises RuntimeError with the reason, "
+		"and\n"
+		"changes nothing, for a file that is damaged, cut, foreign or of another version, and for a scene with other bodies, "
+		"engines,\n"
+		"time step or law.");
+	py::def("saved_scene", saved_scene, (py::arg("path")),
+		"What O.save wrote when a checkpoint was made, as bytes; empty if nothing. Raises RuntimeError as GrainLoop.restore.");
+	py::def("seal_scene", seal_scene, (py::arg("path"), py::arg("saved_scene")),
+		"Write bytes that O.save made into a checkpoint of a scene on YADE's own loop: atomic, with checksum and version.");
+}
+
+}  // namespace graindrive

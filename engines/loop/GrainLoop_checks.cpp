@@ -1,0 +1,98 @@
+/// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, a second integrator.
+#include <algorithm>
+#include <cmath>
+
+#include "engines/loop/GrainLoop.hpp"
+
+namespace graindrive {
+
+namespace {
+
+constexpr std::size_t numbers_per_wall = 9;
+
+}  // namespace
+
+void GrainLoop::check() const
+{
+	require(law == "hertzHistory" || law == "hertzRestitution" || law == "springDashpot",
+		"GrainLoop.law must be 'hertzHistory', 'hertzRestitution' or 'springDashpot'", law);
+	require(precision == "double" || precision == "single", "GrainLoop.precision must be 'double' or 'single'", precision);
+	require(friction >= 0, "GrainLoop.friction must not be negative", friction);
+	require(normalStiffness > 0, "GrainLoop.normalStiffness must be positive", normalStiffness);
+	require(tangentialStiffness > 0, "GrainLoop.tangentialStiffness must be positive (friction=0 switches tangential forces off)",
+		tangentialStiffness);
+	require(normalDamping >= 0 && tangentialDamping >= 0, "GrainLoop.normalDamping and tangentialDamping must not be negative",
+		std::min(normalDamping, tangentialDamping));
+	require(
+		gravity.allFinite() && gravity[2] == 0, "GrainLoop.gravity must be finite and in the plane, 0 in z", gravity.transpose());
+	require(std::isfinite(normalStiffness + tangentialStiffness + normalDamping + tangentialDamping + friction),
+		"GrainLoop's stiffnesses, dampings and friction must be finite", normalStiffness);
+	require(std::isfinite(young), "GrainLoop.young must be finite", young);
+	require(std::isfinite(skin) && skin >= 0, "GrainLoop.skin must be finite and not negative", skin);
+	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
+	require(periods.allFinite() && periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0,
+		"GrainLoop.periods must not be negative, and 0 in z", periods.transpose());
+	require(largestOverlap > 0 && largestOverlap <= 1, "GrainLoop.largestOverlap must lie in (0, 1] of the smaller radius",
+		largestOverlap);
+	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
+	require(
+		targetAreaFraction >= 0 && targetAreaFraction < 1, "GrainLoop.targetAreaFraction must lie in [0, 1)", targetAreaFraction);
+	require(loads.size() % 3 == 0, "GrainLoop.loads must hold three numbers a body", loads.size());
+	require(wallSettings.size() % numbers_per_wall == 0, "GrainLoop.wallSettings must hold nine numbers a wall; use setWall",
+		wallSettings.size());
+	require(wallSprings.size() % 3 == 0, "GrainLoop.wallSprings must hold three numbers a contact", wallSprings.size());
+	require(bounds.empty() || bounds.size() == 4, "GrainLoop.bounds must be four numbers, xLow, yLow, xHigh, yHigh, or none",
+		bounds.size());
+	require(std::all_of(bounds.begin(), bounds.end(), [](Real b) { return std::isfinite(b); }),
+		"GrainLoop.bounds must be finite; equal numbers leave an axis without bound", "one that is not");
+	require(bounds.empty() || (bounds[0] <= bounds[2] && bounds[1] <= bounds[3]),
+		"GrainLoop.bounds must be xLow, yLow, xHigh, yHigh with low <= high", "the other order");
+	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
+	contact_law();
+	laws::hertz_restitution(young, poisson, restitution, friction);  // their own checks, whatever the law in use
+}
+
+/// A cell that is long on purpose leaves an axis free; one that repeats must do so with YADE's own length.
+void GrainLoop::require_periods() const
+{
+	if (!scene->isPeriodic) return;
+	if (periods.isZero(0))
+		throw std::invalid_argument("GrainLoop: O.periodic is set but GrainLoop.periods are 0; give the period in x (and y), "
+									"e.g. periods=(O.cell.size[0], 0, 0)");
+	for (int axis = 0; axis < 2; ++axis) {
+		const Real period = periods[axis], edge = scene->cell->hSize(axis, axis);
+		if (period == 0 || std::abs(period - edge) <= 1e-12 * edge) continue;
+		throw std::invalid_argument(std::string("GrainLoop: the period in ") + "xy"[axis] + " is " + std::to_string(period) +
+									", O.cell repeats after " + std::to_string(edge) +
+									"; make them equal (O.cell.setBox, or periods), or 0 for an axis that does not repeat");
+	}
+}
+
+/// Bodies may be erased while the loop does not look; the few that it writes at every step are checked at every step.
+void GrainLoop::require_bodies(bool all) const
+{
+	const auto require_all = [&](const std::vector<int>& ids) {
+		for (const int id : ids)
+			if (id >= 0 && !scene->bodies->exists(id))
+				throw std::runtime_error("GrainLoop: body " + std::to_string(id) +
+										 " was erased from O.bodies; call sync() before such a change and read() after it");
+	};
+	require_all(map_.body_id);
+	if (all) require_all(map_.grain_id);
+}
+
+/// Two integrators would move everything twice.
+void GrainLoop::require_alone() const
+{
+	for (const auto& engine : scene->engines) {
+		const std::string name = engine->getClassName();
+		const bool rival =
+			(name == class_name && engine.get() != this) || name == "NewtonIntegrator" || name == "InteractionLoop";
+		if (rival && !engine->dead)
+			throw std::runtime_error(
+				"GrainLoop takes the place of collider, InteractionLoop and NewtonIntegrator; O.engines also holds " + name +
+				": remove it");
+	}
+}
+
+}  // namespace graindrive

@@ -1,0 +1,87 @@
+/// What passes between GrainLoop and YADE's bodies: driven bodies at every step, all of them where anyone can look.
+#include <cmath>
+
+#include "engines/loop/GrainLoop.hpp"
+
+namespace graindrive {
+
+void GrainLoop::follow_bodies()
+{
+	for (std::size_t b = 0; b < map_.body_id.size(); ++b) {
+		if (map_.body_id[b] < 0) continue;
+		const yade::State& state = *(*scene->bodies)[map_.body_id[b]]->state;
+		loop::RigidBody& body = stepper_->bodies()[b];
+		loop::read_state(state, body);
+		body.x = state.pos[0], body.y = state.pos[1];
+	}
+}
+
+void GrainLoop::write_bodies()
+{
+	for (std::size_t b = 0; b < map_.body_id.size(); ++b)
+		if (map_.body_id[b] >= 0) loop::write_state(stepper_->bodies()[b], *(*scene->bodies)[map_.body_id[b]]->state);
+}
+
+/// A frozen disk that someone has set in motion becomes a body of its own.
+void GrainLoop::release_what_moves()
+{
+	bool moves = false;
+	for (std::size_t g = 0; g < map_.grain_id.size() && !moves; ++g) {
+		const int owner = stepper_->settings().grains[g].body;
+		if (owner != loop::free_grain && map_.body_id[owner] < 0)
+			moves = !loop::is_frozen(*(*scene->bodies)[map_.grain_id[g]]->state);
+	}
+	if (!moves) return;
+	sync();
+	build();
+	compute_body_forces();
+}
+
+void GrainLoop::sync()
+{
+	if (!stepper_ || !scene || read_from_ != scene) return;
+	const auto nearest = [](Real d, Real period) { return period > 0 ? d - period * std::nearbyint(d / period) : d; };
+	for (std::size_t g = 0; g < map_.grain_id.size(); ++g) {
+		if (!scene->bodies->exists(map_.grain_id[g])) continue;
+		const loop::Grain now = stepper_->grain(g);
+		yade::State& state = *(*scene->bodies)[map_.grain_id[g]]->state;
+		if (now.body != loop::free_grain && (map_.body_id[now.body] < 0 || map_.body_id[now.body] == map_.grain_id[g])) continue;
+		state.pos[0] += nearest(now.x - state.pos[0], periods[0]);  // YADE counts the windings of a periodic box
+		state.pos[1] += nearest(now.y - state.pos[1], periods[1]);
+		state.vel[0] = now.vx, state.vel[1] = now.vy;
+		state.angVel[2] = now.spin;
+		state.angMom[2] = now.spin * state.inertia[2];
+	}
+	keep_walls();
+	springs.clear();
+	for (const loop::Spring& s : stepper_->springs())
+		springs.insert(springs.end(), { Real(map_.grain_id[s.first]), Real(map_.grain_id[s.second]), s.slip });
+}
+
+void GrainLoop::read()
+{
+	keep_walls();
+	stepper_.reset();
+}
+
+void GrainLoop::begin_on_step()
+{
+	stepper().begin_on_step();
+	write_bodies();
+}
+
+/// The springs of the last sync between disks that are there still.
+std::vector<loop::Spring> GrainLoop::kept_springs() const
+{
+	const auto grain_of = [&](Real id) {
+		return id >= 0 && id < map_.grain_of_id.size() ? map_.grain_of_id[std::size_t(id)] : -1;
+	};
+	std::vector<loop::Spring> kept;
+	for (std::size_t k = 0; k + 2 < springs.size(); k += 3) {
+		const int a = grain_of(springs[k]), b = grain_of(springs[k + 1]);
+		if (a >= 0 && b >= 0) kept.push_back({ std::uint32_t(a), std::uint32_t(b), springs[k + 2] });
+	}
+	return kept;
+}
+
+}  // namespace graindrive

@@ -1,0 +1,1 @@
+"""Campaigns: their runs as a table, claims with verdicts, figures with captions, reports, and RESULTS.md."""
