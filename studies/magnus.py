@@ -32,7 +32,7 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import channel, engines, fields, headless, intruder, recording, scene  # noqa: E402
+from graindrive import channel, engines, fields, headless, intruder, progress, recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import quantity  # noqa: E402
@@ -52,6 +52,8 @@ PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains w
 FIELD_SAMPLES = 1000  # frames that the fields average
 FIELD_REACH = 10  # d around the body, half as much again behind it
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
+LEAST_WINDOW = 0.5  # d of travel to average, or there would be no error
+MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 
 
 class MagnusParameters(intruder.BodyParameters):
@@ -107,12 +109,26 @@ def check_room(p):
         raise UsageError(
             f"travel={p.way:g} d is longer than the channel: the body would meet its wake; raise width={p.width:g}"
         )
-    if p.way <= p.settle_travel:
+    if p.way - p.settle_travel < LEAST_WINDOW:
         raise UsageError(
-            f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d; raise travel and width"
+            f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d, at least {LEAST_WINDOW} d"
+            " are needed; raise travel and width"
         )
     fields.check_spacing(p.field_spacing)
     channel.check_room(p.width, p.height, p.intruder_diameter)
+    if p.fields and 5 * (field_reach(p) / p.field_spacing) ** 2 > MOST_BINS:
+        raise UsageError(
+            f"field_spacing={p.field_spacing:g} d makes over {MOST_BINS:.0e} bins; raise it, or leave the fields out, fields=0"
+        )
+
+
+def check_load(p, grains):
+    """UsageError for walls that a pressure presses into grains further than the overlap allowed; mu plays no part."""
+    if p.wall_pressure * D > (most := grains.force_between(D / 2, p.largest_overlap)):
+        raise UsageError(
+            f"wall_pressure={p.wall_pressure:g} N/m presses grains into each other by more than largest_overlap="
+            f"{p.largest_overlap:g} R; at most {most / D:.3g} N/m are possible"
+        )
 
 
 def packing(p, body):
@@ -179,9 +195,14 @@ def measures(p, held, dt):
     return [binner, field_averager(p, held, dt)] if p.fields else [binner]
 
 
+def field_reach(p):
+    """Return how far the fields reach around the body [d], a whole number."""
+    return min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
+
+
 def field_averager(p, held, dt):
     """Return the engine that averages the fields in the body's frame."""
-    reach = min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
+    reach = field_reach(p)
     corners = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0))
     every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * dt) / FIELD_SAMPLES))
     bins = dict(kernel="diskBin", spacing=p.field_spacing * D, relative=True, stress=False)
@@ -205,6 +226,8 @@ def run(p, folder):
     """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
     check_room(p)
     dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
+    check_load(p, grains)
+    progress.require_feasible(p.way * D / (p.v0 * dt))
     body = intruder.of_size(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
     smallest = (1 - p.polydispersity) * D / 2
     ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)

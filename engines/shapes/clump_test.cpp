@@ -165,6 +165,8 @@ TEST(Beads, refuse_sizes_and_spacings_out_of_range)
 		EXPECT_TRUE(mentions(complaint([&] { clump_of(square, 0.5, bad); }), "mass must be positive"));
 	}
 	EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, 1.01); }), "got 1.01"));
+	EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, 1e-12); }), "at most 1e5 beads"));
+	EXPECT_TRUE(mentions(complaint([&] { beads(outline_of("disk"), 1e-9); }), "at most 1e5 beads"));
 }
 
 TEST(Clump, has_the_solids_mass_and_inertia_about_its_centroid)

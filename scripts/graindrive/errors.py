@@ -1,10 +1,14 @@
-"""The two ways in which a run ends early on purpose: a request that cannot be met, and a signal."""
+"""The ways in which a run ends early: a request that cannot be met, an engine that stops it, a signal."""
 
 
 class UsageError(Exception):
     """What was asked for cannot be done; the message is one line: what was given, what is allowed, the way out."""
 
     exit_code = 2
+
+
+class EngineError(RuntimeError):
+    """An engine stopped the run, as GrainLoop's guards do; the message is the engine's, one line that needs no traceback."""
 
 
 class Interrupted(BaseException):

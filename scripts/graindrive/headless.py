@@ -17,7 +17,7 @@ from pathlib import Path
 
 from . import run_data, signals
 from .cache import cache_folder
-from .errors import Interrupted, UsageError, one_line
+from .errors import EngineError, Interrupted, UsageError, one_line
 from .run_folder import RunFolder
 from .run_remains import AlreadyComplete
 
@@ -112,7 +112,8 @@ def guarded(action, name):
         print(f"{name}: stopped by {signal.Signals(number).name}", file=sys.stderr)
         return 128 + number
     except Exception as error:
-        traceback.print_exc()
+        if not isinstance(error, EngineError) or os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0"):
+            traceback.print_exc()
         print(f"{name}: failed: {type(error).__name__}: {one_line(error, 300)}", file=sys.stderr)
         return 1
 

@@ -36,6 +36,10 @@ class HertzHistoryMaterial:
         sliding = self.tangential_stiffness * hertz, self.tangential_damping * mass / 2 * hertz, mass / 6
         return min(normal, limit(*sliding))
 
+    def force_between(self, radius, overlap):
+        """Return K_n sqrt(R_eff) delta^1.5 [N], the normal force of resting disks of `radius` [m] overlapping by `overlap` of it."""
+        return self.normal_stiffness * math.sqrt(radius / 2) * (overlap * radius) ** 1.5
+
 
 def limit(stiffness, dashpot, mass):
     """Return leapfrog's stability limit [s] of a damped oscillator: stiffness [N/m], dashpot [kg/s], mass [kg]."""

@@ -7,7 +7,7 @@ import time
 from dataclasses import dataclass
 
 from . import signals
-from .errors import UsageError
+from .errors import EngineError, UsageError
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run"):
     """Run YADE `total_steps` steps, calling `on_block(steps_done)` after every `block` steps; return the `Timing`.
 
     A true answer of `on_block` ends the run early. `grains` is the number of grains [-] that the rate counts. Raises
-    what an engine raised (RuntimeError), `Interrupted` on a signal, RuntimeError if something else paused the loop,
+    EngineError with what an engine raised, `Interrupted` on a signal, RuntimeError if something else paused the loop,
     UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
@@ -147,7 +147,7 @@ class LoopListener:
         """Raise what an engine threw, if that was heard."""
         self.thread.join()
         if self.error is not None:
-            raise RuntimeError(str(self.error)) from None
+            raise EngineError(str(self.error)) from None
 
 
 _listener = LoopListener()

@@ -188,7 +188,14 @@ def test_another_shape_is_driven_as_beads(magnus, tmp_path):
         (dict(width=24.5), "whole number of wall disks"),
         (dict(dt_factor=100), "lower dt_factor"),
         (dict(shape="hexagram"), "shape must be one of"),
+        (dict(settle_travel=1.99), "leaves nothing to average"),
+        (dict(travel=0.01, settle_travel=0), "leaves nothing to average"),
         (dict(field_spacing=0.3), "must divide 1 d"),
+        (dict(field_spacing=0.001, fields=True), "raise it, or leave the fields out"),
+        (dict(v0=1e-12, fields=True), "steps, more than"),
+        (dict(dt_factor=1e-300, fields=True), "steps, more than"),
+        (dict(shape="square", bead_diameter=1e-6), "take larger beads"),
+        (dict(wall_pressure=1e12), "wall_pressure=1e.12 N/m presses grains into each other"),
     ],
 )
 def test_bad_input_is_a_usage_error_and_nothing_is_written(magnus, tmp_path, changes, said):

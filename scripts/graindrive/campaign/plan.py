@@ -14,6 +14,7 @@ import contextlib
 import importlib
 import importlib.util
 import itertools
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -199,6 +200,8 @@ def crossed(place, grids, common):
         for key, axis in zip(merged, axes):
             if not axis:
                 raise UsageError(f"{place}: {one_line(key)} has no values; give at least one")
+        if math.prod(map(len, axes)) > MOST_RUNS:  # before each is parsed, which would take minutes
+            raise UsageError(f"{place} makes more than {MOST_RUNS} runs; give fewer values")
         for combination in itertools.product(*axes):
             yield dict(zip(merged, combination))
 
