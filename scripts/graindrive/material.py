@@ -37,7 +37,7 @@ class HertzHistoryMaterial:
         return min(normal, limit(*sliding))
 
     def force_between(self, radius, overlap):
-        """Return K_n sqrt(R_eff) delta^1.5 [N], the normal force of resting disks of `radius` [m] overlapping by `overlap` of it."""
+        """Return K_n sqrt(R_eff) delta^1.5 [N], the force of resting disks of `radius` [m] that overlap by `overlap` of it."""
         return self.normal_stiffness * math.sqrt(radius / 2) * (overlap * radius) ** 1.5
 
 

@@ -10,8 +10,8 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import progress, recording
-from graindrive.errors import Interrupted, UsageError
+from graindrive import headless, progress, recording
+from graindrive.errors import EngineError, Interrupted, UsageError
 from graindrive.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
@@ -177,6 +177,14 @@ def test_another_shape_is_driven_as_beads(magnus, tmp_path):
     carry_out(magnus, tmp_path / "run", shape="square", bead_diameter=0.5)
     with h5py.File(tmp_path / "run/run.h5") as file:
         assert np.ptp(file["intruder/outline"][:], axis=0) == pytest.approx([3 * 0.02, 3 * 0.02])
+
+
+def test_what_an_engine_says_is_one_line_without_a_traceback(capsys):
+    def stopped():
+        raise EngineError("step 7: grains overlap")
+
+    assert headless.guarded(stopped, "magnus") == 1
+    assert capsys.readouterr().err == "magnus: failed: EngineError: step 7: grains overlap\n"
 
 
 @pytest.mark.parametrize(

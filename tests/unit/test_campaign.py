@@ -91,6 +91,7 @@ def test_switches_and_empty_values_become_the_studys_words(plan):
         (("steps: 20", "redo: 1"), "redo is not for campaigns"),
         (("steps: 20", "steps: {a: 1}"), "steps must be a number, a word or a switch"),
         (("[1, 2]", "[]"), "seed has no values; give at least one"),
+        (("[1, 2]", f"{list(range(100_001))}"), "sweep a makes more than 100000 runs"),
         (("{seed: [1, 2]}", "5"), "sweep a must be keys with values or lists of values, got 5"),
         (("steps: 20", "steps: 20, steps: 30"), "steps is given twice"),
         (("{seed: [1, 2]}", "{seed: [1, 2"), "is not YAML"),
