@@ -67,7 +67,12 @@ class MagnusParameters(intruder.BodyParameters):
     height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0)
     travel: Optional[float] = quantity(None, "d", "how far the body goes; auto: the channel's length, the most", gt=0)
     settle_travel: float = quantity(30.0, "d", "travel that the averages leave out at least", ge=0)
-    until_error: float = quantity(0.0, "-", "standard error of L/D at which the run may end; 0: never", ge=0)
+    until_error: float = quantity(
+        0.0,
+        "-",
+        "standard error of L/D at which the run may end (chance favours low ones); 0: never",
+        ge=0,
+    )
     intruder_diameter: float = quantity(5.0, "d", "diameter of the disk; longer side of another shape", ge=1)
     shape: str = quantity("disk", "-", "disk, or another shape as beads: square, tall, wide, triangle, or a file")
     bead_diameter: float = quantity(0.5, "d", "diameter of the beads of a shape other than the disk", gt=0)
@@ -161,7 +166,7 @@ def add_walls(p):
 
 
 def build(p, grains, dt, body):
-    """Put walls, grains, body, drive and measures into YADE; return their ids, first and behind the last, and phi."""
+    """Put walls, grains, body, drive and measures into YADE; return their ids, first and behind the last, phi and the grains' area."""
     from yade import O
 
     packed = packing(p, body)
@@ -173,9 +178,14 @@ def build(p, grains, dt, body):
     scene.run_as_asked(p, grains, gravity=0.0, between=[*measures(p, held, dt), imposed_motion(p, held)])
     for wall, side in zip(clumps, (1, -1)):
         scene.load_on(wall, (0, side * p.wall_pressure * p.width * D, 0))
-    return dict(
-        walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held, phi=float(packed["phi"])
-    )
+    ends = dict(walls=list(map(int, walls)), grains=[int(ids[0]), int(ids[-1]) + 1], body=held)
+    return dict(ends, phi=float(packed["phi"]), grain_area=float(np.pi * np.sum(packed["r"] ** 2)))
+
+
+def area_fraction(p, stage):
+    """Return the area fraction where the walls are now: a pressure may have moved them."""
+    apart = scene.height_of(stage["walls"][-1]) - scene.height_of(stage["walls"][0])
+    return channel.fraction_after(stage["phi"], stage["grain_area"], p.width * D * (apart - (p.height - 1) * D))
 
 
 # Drive ----------------------------------------------------------------------------------------------------------------
@@ -232,7 +242,7 @@ def run(p, folder):
     smallest = (1 - p.polydispersity) * D / 2
     ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
     if folder.resumed:
-        stage = recording.load_stage(folder, ("walls", "grains", "body", "phi"))
+        stage = recording.load_stage(folder, ("walls", "grains", "body", "phi", "grain_area"))
     else:
         stage = build(p, grains, dt, body)
     folder.write("intruder", body.as_arrays("m"))
@@ -261,7 +271,9 @@ def record(p, folder, stage):
         if done == 0:
             return False
         t = done * O.dt
-        row = dict(t=t, travel=p.v0 * t / D, x=state.pos[0], **recording.block_means(binner))
+        row = dict(
+            t=t, travel=p.v0 * t / D, x=state.pos[0], phi=area_fraction(p, stage), **recording.block_means(binner)
+        )
         folder.append(**{name: row[name] for name in UNITS})
         track.append(row)
         if p.fields:
@@ -278,7 +290,7 @@ def record(p, folder, stage):
     if p.fields:
         fields.write_fields(folder, "around", around)
     folder.write("angular", found.angular, first_travel=found.start)
-    folder.summarize(phi=stage["phi"], v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, **found.summary)
+    folder.summarize(v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, **found.summary)
 
 
 def main(**defaults):

@@ -18,7 +18,7 @@ constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead bes
 constexpr Real largest_gap =
 	2.0;  // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
 constexpr Real degeneracy = 1e-9;  // beads may stand this part of their radius off the outline where CGAL needs a nudge [-]
-constexpr Real most_steps = 1e5;        // between two corners: more would take minutes, and no grain could tell
+constexpr Real most_steps = 1e5;   // between two corners: more would take minutes, and no grain could tell
 constexpr Real step_slack = 1e-9;  // a step may pass the asked one by round-off, or 6 / 0.5 would give 13 beads [-]
 
 void require(bool holds, const char* rule, Real got)

@@ -11,6 +11,7 @@ from . import model
 UNITS = dict(
     t="s",
     travel="d",
+    phi="-",
     x="m",
     fx="N",
     fy="N",
@@ -63,6 +64,7 @@ def steady_state(series, settle, mu, spin_ratio):
     kept = {name: np.asarray(series[name])[window] for name in (*UNITS, *BY_ANGLE)}
     drag, lift = drag_and_lift(kept, spin_ratio)
     means = dict(drag=block_mean(drag), lift=block_mean(lift), contacts=block_mean(kept["contacts"]))
+    means.update(phi=block_mean(kept["phi"]))  # it changes where walls are free
     means.update(torque=block_mean(kept["torque"]), lift_to_drag=ratio_mean(lift, drag))
     means.update(slipping_share=ratio_mean(kept["slipping"], kept["contacts"]))
     means.update(shares(kept, drag))

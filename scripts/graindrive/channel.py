@@ -28,6 +28,11 @@ def check_room(width, height, diameter):
         )
 
 
+def fraction_after(phi, grain_area, widening):
+    """Return the area fraction of grains of `grain_area`, at `phi` before, when the area between the walls grew by `widening`."""
+    return grain_area / (grain_area / phi + widening)
+
+
 def channel(recipe):
     """Return a channel as a dict: x, y, r of its grains, shape (n,); phi, mean kinetic energy, deepest overlap.
 

@@ -171,6 +171,14 @@ def test_walls_under_pressure_push_the_grains_together(magnus, tmp_path, loop):
     free_fall = 5.0 / mass_over_length * time**2 / 2
     moved = [9.5 * 0.02 - abs(y) for y in walls]
     assert len(moved) == 2 and all(0.3 * free_fall < way <= 1.01 * free_fall for way in moved)
+    with h5py.File(tmp_path / "run/run.h5") as file:
+        begun, phi = file["series/phi"][0], file["series/phi"][-1]
+        frame, width = file["frames/0001"], file["parameters/width"][()] * 0.02
+        area = np.pi * np.sum(frame["r"][:][frame["role"][:] == 0] ** 2)
+    assert phi > begun
+    assert area / begun - area / phi == pytest.approx(
+        width * sum(moved), rel=0.1
+    )  # less what they moved in the first block
 
 
 def test_another_shape_is_driven_as_beads(magnus, tmp_path):

@@ -47,7 +47,7 @@ def series(n, mu=0.5, seed=2):
     touching = (normal > 0).astype(float)
     zeros = np.zeros(n)
     found = dict(t=np.arange(n) + 1.0, travel=0.1 * (np.arange(n) + 1), x=zeros, fx=-drag, fy=-lift, torque=zeros)
-    found.update(normal_x=-pressing)
+    found.update(normal_x=-pressing, phi=zeros + 0.8)
     found.update(contacts=touching.sum(axis=1), slipping=touching.sum(axis=1), contacts_var=zeros)
     found.update(fx_var=zeros + 4.0, fy_var=zeros)
     return {
