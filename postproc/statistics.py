@@ -69,8 +69,8 @@ def steady_start(samples, *, parts=20, at_most=0.5, deviations=3.0):
     Geweke's test (1992): the means of the first fifth and of the last half of what is left must agree within so many
     standard errors; the first multiple of n/`parts` that passes is taken, up to `at_most` of the series. The errors are
     those of a steady process: the last half's by blocking, the first fifth's in proportion, since its own would hold the
-    transient. It cuts nothing that noise explains; as several cuts are tried, a weak
-    drift passes more easily than the level of one test says. A last half whose error blocking cannot resolve is not called steady.
+    transient. It cuts nothing that noise explains; as several cuts are tried, a weak drift
+    passes more easily than the level of one test says. A last half whose error blocking cannot resolve is not called steady.
     """
     x = np.asarray(samples, dtype=float)
     for cut in (k * len(x) // parts for k in range(int(at_most * parts) + 1)):

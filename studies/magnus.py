@@ -166,7 +166,7 @@ def add_walls(p):
 
 
 def build(p, grains, dt, body):
-    """Put walls, grains, body, drive and measures into YADE; return their ids, first and behind the last, phi and the grains' area."""
+    """Put walls, grains, body, drive and measures into YADE; return ids (first, behind the last), phi, grains' area."""
     from yade import O
 
     packed = packing(p, body)

@@ -153,7 +153,8 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
     """Put the loop of that name into O.engines: "yade" (the reference) or "grain" (fast, the same physics).
 
     GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius; it takes as many
-    `threads` as YADE was started with, unless they are given, but no more than pay: one for every 5,000 grains or so. Results have the same bits for any number.
+    `threads` as YADE was started with, unless they are given, but no more than pay: one for every 5,000 grains or so.
+    Results have the same bits for any number.
     """
     from yade import O
 
