@@ -94,7 +94,7 @@ def forces_by_angle(campaign, rows, claims):
         for side in (-0.5, 0.5):
             panel.axvline(side, color=GREY, linewidth=0.6)
     middle.set_ylim(-1.1, 1.1)
-    right.legend()
+    right.legend(loc="upper left", fontsize=6, handlelength=1.2)
     return figure
 
 
