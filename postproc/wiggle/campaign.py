@@ -3,11 +3,12 @@
 import numpy as np
 
 from ..campaign.report import PlannedFigure
-from . import claims, plots
+from . import claims, period_claims, plots
 
 TITLE = "Wiggle: bodies shaken sideways that rise or sink"
 SWEEPS = {
     "periods": "several shapes, amplitudes up to 5 and periods with 1 and its neighbours, two seeds or more",
+    "amplitudes": "a few shapes, a period that rises, amplitudes from 0.5 to 5",
     "phases": "one amplitude, a few shapes and periods",
     "friction": "a few shapes and periods, several mu",
     "drive": "both values of drive, a few periods",
@@ -54,7 +55,7 @@ FIGURES = (
         "Fig. 5: rise rate against period",
         "Rise rate against period for each shape and amplitude, with the cavity model (dashed, Eq. 3.17; dotted, T_rise)."
         " Paper: nothing moves at A ≤ 1, sinking is fastest at T = 1, V_y has a maximum in T. The model leaves the panels.",
-        claims.period_claims,
+        period_claims.period_claims,
         plots.against_period,
     ),
     PlannedFigure(
@@ -62,7 +63,7 @@ FIGURES = (
         "periods",
         "Table 1: the first period that rises",
         "At A = 5 d, between the last period that sinks and the first that rises.",
-        claims.table_claims,
+        period_claims.table_claims,
         plots.first_periods,
     ),
     PlannedFigure(
@@ -70,8 +71,16 @@ FIGURES = (
         "periods",
         "Fig. 14: rise rate over period and amplitude",
         "Red rises, blue sinks. Paper: OS1 rises fastest, then OS3, OS2, OS4; OS5 sinks or barely moves.",
-        claims.order_and_triangle_claims,
+        period_claims.order_and_triangle_claims,
         plots.colour_map,
+    ),
+    PlannedFigure(
+        "amplitude",
+        "amplitudes",
+        "The smallest amplitude that moves a body",
+        "Rise rate against amplitude; dotted, A_min = d/2 of the cavity model. Taken where V_y reaches a tenth of its largest.",
+        period_claims.amplitude_claims,
+        plots.against_amplitude,
     ),
     PlannedFigure(
         "fig6",

@@ -11,7 +11,9 @@ from ..campaign.plots import COLOURS, canvas, draw_points, look, share_y
 from ..campaign.runs import curve, quantity
 from ..figures import BLACK, GREY, VERMILLION
 from . import runs
-from .claims import OBSERVED, TABLE_1_AMPLITUDE, scenes_of
+from .cavity_model import smallest_amplitude
+from .claims import scenes_of
+from .period_claims import OBSERVED, TABLE_1_AMPLITUDE
 from .runs import RATE, by_shape, title
 
 RATE_LABEL = r"$V_y$  [$\sqrt{gd}$]"
@@ -99,6 +101,19 @@ def colour_map(campaign, rows, claims):
         panel.set_yticks(places[1], [f"{a:g}" for a in table.index])
         panel.set(title=title(shape), xlabel=PERIOD_LABEL, ylabel="$A$  [$d$]")
     figure.colorbar(image, ax=list(axes), label=RATE_LABEL, shrink=0.8)
+    return figure
+
+
+def against_amplitude(campaign, rows, claims):
+    """V_y against A, a panel for each shape, a line for each period, with the cavity model's A_min."""
+
+    def points_of(of_one):
+        return curve(of_one, "amplitude", RATE)
+
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "$A$  [$d$]", height=2.4)
+    for panel in axes:
+        panel.axvline(smallest_amplitude(), color=GREY, linewidth=0.5, linestyle=":")
+    axes[0].legend()
     return figure
 
 

@@ -10,6 +10,7 @@ from .cavity_model import CavityModel
 SHAPES = ("disk", "square", "tall", "wide", "triangle")  # OS1 to OS5
 TITLES = dict(zip(SHAPES, ("disk, OS1", "square, OS2", "tall rectangle, OS3", "wide rectangle, OS4", "triangle, OS5")))
 RATE = "rise_rate"
+NEGLIGIBLE = 0.1  # of the fastest motion: our reading of the paper's "negligible"
 
 
 def by_shape(rows):
@@ -46,12 +47,24 @@ def largest_motion(rows):
 
 
 def first_rising_period(rows):
-    """Return the period at which the rise rate turns positive on the way to its maximum, as `Measured`.
+    """Return the period at which the rise rate turns positive on the way to its maximum, as `Measured`; see `last_zero`."""
+    return last_zero(*rates(rows))
 
-    Linear between the two periods about the zero; the error is that of the two rates. UNKNOWN where the body rises at
-    all periods below the maximum, or never rises.
+
+def smallest_moving_amplitude(rows):
+    """Return the amplitude at which the rise rate reaches a tenth of its largest, as `Measured`; see `last_zero`."""
+    amplitudes, points = curve(rows, "amplitude", RATE)
+    largest = max(points, key=lambda m: m.value)
+    level = Measured(NEGLIGIBLE * largest.value, NEGLIGIBLE * largest.error)
+    return last_zero(amplitudes, [point - level for point in points])
+
+
+def last_zero(x, points):
+    """Return where a curve through points (n `Measured`) at rising x (n,) turns positive on the way to its maximum.
+
+    Linear between the two points about the zero; the error is that of the two. UNKNOWN where all points below the maximum
+    are positive, or none is.
     """
-    periods, points = rates(rows)
     values = np.array([m.value for m in points])
     if not len(values) or not values.max() > 0:
         return UNKNOWN
@@ -60,7 +73,7 @@ def first_rising_period(rows):
     if not len(below):
         return UNKNOWN
     k = int(below[-1])
-    return zero_between(periods[k], points[k], periods[k + 1], points[k + 1])
+    return zero_between(x[k], points[k], x[k + 1], points[k + 1])
 
 
 def zero_between(x_low, low, x_high, high):

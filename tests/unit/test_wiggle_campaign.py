@@ -14,12 +14,11 @@ from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Measured
 from graindrive.postproc.wiggle import campaign as wiggle_campaign
 from graindrive.postproc.wiggle import runs as wiggle_runs
-from graindrive.postproc.wiggle.claims import (
-    drive_claims,
+from graindrive.postproc.wiggle.claims import drive_claims, phase_claims, scene_claims
+from graindrive.postproc.wiggle.period_claims import (
+    amplitude_claims,
     order_and_triangle_claims,
     period_claims,
-    phase_claims,
-    scene_claims,
     table_claims,
 )
 
@@ -118,6 +117,11 @@ def test_a_paper_that_is_true_is_reproduced(tmp_path):
     assert len(order) == 8 and {c.verdict for c in order} == {Verdict.REPRODUCED}
     assert all(c.verdict is Verdict.REPRODUCED for c in claims if "sinking is fastest at T = 1" in c.text)
     assert all(c.verdict is Verdict.REPRODUCED for c in claims if "barely rises" in c.text)
+    signs = [c for c in claims if "A 3: it " in c.text]
+    # In these runs square and tall rectangle sink up to 3.5 and 3.6: they do not rise at all T > 2.
+    late = ("square, A 3: it rises at T > 2; the least V_y", "tall, A 3: it rises at T > 2; the least V_y")
+    assert len(signs) == 8
+    assert {c.text for c in signs if c.verdict is not Verdict.REPRODUCED} == set(late)
     # The model's T_rise of the tall rectangle, 4.47, is not the 3.6 of these runs.
     assert judged["tall: first period that rises, cavity model"] is Verdict.NOT_REPRODUCED
     assert judged["disk: first period that rises, cavity model"] is Verdict.REPRODUCED
@@ -153,6 +157,14 @@ def test_a_body_that_always_or_never_rises_has_no_first_period(tmp_path, monkeyp
     assert np.isnan(wiggle_runs.first_rising_period(campaign.table).value)
 
 
+def test_the_smallest_amplitude_that_moves_is_where_a_tenth_of_the_fastest_is_reached(tmp_path):
+    campaign = campaign_of(tmp_path, dict(amplitudes=[dict(period=[5.0], amplitude=[0.5, 1.0, 3.0, 5.0], seed=[1, 2])]))
+    of_runs, of_model = amplitude_claims(campaign, campaign.sweep("amplitudes"))
+    # Nothing at 1, three fifths at 3: a tenth of the fastest at 1 + 2 / 6.
+    assert of_runs.measured.value == pytest.approx(4 / 3, abs=0.02)
+    assert of_runs.verdict is of_model.verdict is Verdict.REPRODUCED
+
+
 def test_scenes_are_compared_with_the_one_of_most_grains(tmp_path):
     campaign = campaign_of(tmp_path, dict(scene=[dict(scene, period=[1.0, 4.0], seed=[1, 2, 3]) for scene in SCENES]))
     claims = scene_claims(campaign, campaign.sweep("scene"))
@@ -185,6 +197,7 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
         dict(
             periods=[dict(shape=["disk", "wide", "triangle"], amplitude=[1.0, 5.0], period=[1.0, 2.0, 3.0, 5.0, 8.0])],
             phases=[dict(shape=["disk", "triangle"], period=[1.0, 4.0])],
+            amplitudes=[dict(shape=["disk", "tall"], amplitude=[0.5, 1.0, 3.0, 5.0], period=5.0)],
             friction=[dict(shape=["disk", "tall"], period=[4.0, 5.0], mu=[0.0, 0.1, 0.3, 0.5])],
             drive=[dict(period=PERIODS, drive=["displacement", "velocity"])],
             fields=[dict(shape=["disk", "triangle"], period=[1.0], fields=1, seed=[1, 2, 3])],
