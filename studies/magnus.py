@@ -232,15 +232,20 @@ def say_if_not_resolved(p, found):
 # Run ------------------------------------------------------------------------------------------------------------------
 
 
-def run(p, folder):
-    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
+def check(p):
+    """Refuse values that no run can be made of; return the body and the time step over the critical one."""
     check_room(p)
     dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
     check_load(p, grains)
     progress.require_feasible(p.way * D / (p.v0 * dt))
     body = intruder.of_size(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
     smallest = (1 - p.polydispersity) * D / 2
-    ratio = scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
+    return body, scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
+
+
+def run(p, folder):
+    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
+    (body, ratio), dt, grains = check(p), TIME_STEP * p.dt_factor, material(p.mu)
     if folder.resumed:
         stage = recording.load_stage(folder, ("walls", "grains", "body", "phi", "grain_area"))
     else:
@@ -295,7 +300,7 @@ def record(p, folder, stage):
 
 def main(**defaults):
     """Entry of this study and of presets, which give `defaults`."""
-    headless.main(run, MagnusParameters, PRESETS, defaults=defaults, figure=figure.draw)
+    headless.main(run, MagnusParameters, PRESETS, check=check, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":

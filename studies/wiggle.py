@@ -204,12 +204,18 @@ def keep_rates(p, folder, t, y):
 # Run ------------------------------------------------------------------------------------------------------------------
 
 
-def run(p, folder):
-    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
-    grains, dt, body = material(p), TIME_STEP * p.dt_factor, body_of(p)
-    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
+def check(p):
+    """Refuse values that no run can be made of; return the body and the time step over the critical one."""
+    body, dt = body_of(p), TIME_STEP * p.dt_factor
+    ratio = scene.check_time_step(dt, material(p), SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
     check_period(p, dt)
     progress.require_feasible(p.time / dt)
+    return body, ratio
+
+
+def run(p, folder):
+    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
+    (body, ratio), dt, grains = check(p), TIME_STEP * p.dt_factor, material(p)
     if folder.resumed:
         stage = recording.load_stage(folder, ("base", "grains", "body", "lid"))
     else:
@@ -251,7 +257,7 @@ def record(p, folder, stage):
 
 def main(**defaults):
     """Entry of this study and of its presets, which give `defaults`."""
-    headless.main(run, WiggleParameters, PRESETS, defaults=defaults, figure=figure.draw)
+    headless.main(run, WiggleParameters, PRESETS, check=check, defaults=defaults, figure=figure.draw)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import socketserver
 import sys
 import threading
 import traceback
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,12 +28,13 @@ os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 @dataclass(frozen=True)
 class Declaration:
-    """What a study hands to `main`: its name, its class of parameters, its presets by scale, a preset study's values."""
+    """What a study hands to `main`: its name, its class of parameters, its presets by scale, a preset study's values, its check."""
 
     name: str
     parameters: type
     presets: dict
     defaults: dict
+    check: Callable
 
 
 _declared = None  # where `declaration_of` waits for a declaration; None: `main` runs the study
@@ -55,17 +57,22 @@ def declaration_of(path):
         sys.argv, sys.path[:], _declared = arguments, search_path, None
 
 
-def main(study, parameters, presets, *, defaults=None, figure=None, name=None):
+def nothing_to_check(_p):
+    """All values of a study's class of parameters go together."""
+
+
+def main(study, parameters, presets, *, check=nothing_to_check, defaults=None, figure=None, name=None):
     """Run a study as a command and end the program as a command should.
 
     `study(p, folder)` does the work with checked parameters `p` and an open `RunFolder`; `parameters` is the study's
-    class of parameters, `presets` maps scales to values, `defaults` are a preset study's own values; `figure(path)`
+    class of parameters, `presets` maps scales to values, `defaults` are a preset study's own values; `check(p)` raises
+    UsageError for values that do not go together, which a campaign asks before it runs anything; `figure(path)`
     draws from the finished data. In batch mode (`yade -x`, or no terminal) the program exits: 0, 2 after a UsageError,
     128 + n after signal n, 1 after any other failure. In a terminal a good run returns to YADE's console.
     """
     name = name or Path(sys.argv[0]).stem
     if _declared is not None:
-        _declared.append(Declaration(name, parameters, presets, dict(defaults or {})))
+        _declared.append(Declaration(name, parameters, presets, dict(defaults or {}), check))
         return
     leave_nothing_behind()
     p = parameters.from_command_line(sys.argv[1:], presets, study=name, defaults=defaults)

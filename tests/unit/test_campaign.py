@@ -110,6 +110,19 @@ def test_a_bad_file_is_refused_with_the_place_the_value_and_the_way_out(plan, ch
     assert "campaign.yaml" in str(refusal.value) and "\n" not in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    "study, values, words",
+    [
+        ("magnus", "travel: [60, 300]", "travel=300 d is longer than the channel"),
+        ("wiggle", "amplitude: [1, 60]", "width=120"),
+        ("wiggle", "period: [4, 1e-9]", "period=1e-09"),
+    ],
+)
+def test_values_that_do_not_go_together_are_refused_before_anything_runs(plan, study, values, words):
+    with pytest.raises(UsageError, match=f"campaign.yaml: sweep a: .*{words}"):
+        plan(f"study: {study}\nsweeps:\n  a: {{scale: demo, {values}}}\n")
+
+
 @pytest.mark.parametrize("content", ["", "- 1\n", "\0", "{a: b}: 3\n"])
 def test_a_file_that_is_no_campaign_is_refused(plan, content):
     with pytest.raises(UsageError, match="campaign.yaml"):

@@ -207,13 +207,14 @@ def crossed(place, grids, common):
 
 
 def planned_run(place, values, study):
-    """Return the `PlannedRun` for a dict of single values, checked by the study's own class of parameters."""
+    """Return the `PlannedRun` for a dict of single values, checked by the study's class of parameters and its own check."""
     for key, reason in OWN_KEYS.items():
         if key in values:
             raise UsageError(f"{place}: {key} is not for campaigns: {reason}; leave it out")
     try:
         arguments = [argument(key, value) for key, value in values.items()]
         p = parse(study.parameters, arguments, study.presets, study=study.name, defaults=study.defaults, environment={})
+        study.check(p)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
     return PlannedRun(run_name(p, study), arguments, p)
