@@ -99,7 +99,9 @@ def amplitude_claims(_campaign, rows):
             text = f"{shape}, T {period:g}: the smallest amplitude that moves it"
             claims += [
                 claim(of_period, f"{text}, runs", "Fig. 5", "> 1", smallest, above(SMALL_AMPLITUDE)),
-                claim(of_period, f"{text}, cavity model", "below Eq. 3.17", "> 0.5", smallest, above(smallest_amplitude())),
+                claim(
+                    of_period, f"{text}, cavity model", "below Eq. 3.17", "> 0.5", smallest, above(smallest_amplitude())
+                ),
             ]
     return claims
 

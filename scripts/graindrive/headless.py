@@ -28,7 +28,7 @@ os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 @dataclass(frozen=True)
 class Declaration:
-    """What a study hands to `main`: its name, its class of parameters, its presets by scale, a preset study's values, its check."""
+    """What a study hands to `main`: name, class of parameters, presets by scale, a preset study's values, its check."""
 
     name: str
     parameters: type
