@@ -15,7 +15,7 @@ SWEEPS = {
     "fields": "one phi, spin_ratio 0, 1, 10, fields=1, three seeds or more",
     "friction": "several phi and mu, one large spin_ratio",
 }
-RATES = ((0.352, 0.818), (450e6, 180e6))  # area fraction, particle-steps per second of one core (README)
+RATES = ((0.352, 0.818), (313e6, 88e6))  # area fraction, particle-steps per second of one core (README)
 TIME_STEP, DIAMETER = 2e-6, 0.02  # of the study [s], [m]
 
 

@@ -131,6 +131,6 @@ def test_results_keep_other_campaigns_and_replace_their_own(folder, tmp_path):
 def test_expected_cost_follows_grains_and_steps():
     keys = dict(phi=0.352, width=300, height=200, travel=300, v0=1.0, dt_factor=1.0)
     grains, steps = 0.352 * 300 * 200 / (np.pi / 4), 300 * 0.02 / 2e-6
-    assert magnus_campaign.expected_core_seconds(keys) == pytest.approx(grains * steps / 450e6)
-    assert magnus_campaign.expected_core_seconds({**keys, "travel": None}) == pytest.approx(grains * steps / 450e6)
+    assert magnus_campaign.expected_core_seconds(keys) == pytest.approx(grains * steps / 313e6)
+    assert magnus_campaign.expected_core_seconds({**keys, "travel": None}) == pytest.approx(grains * steps / 313e6)
     assert magnus_campaign.expected_core_seconds({**keys, "dt_factor": 2.0}) == pytest.approx(grains * steps / 900e6)
