@@ -133,4 +133,4 @@ def test_expected_cost_follows_grains_and_steps():
     grains, steps = 0.352 * 300 * 200 / (np.pi / 4), 300 * 0.02 / 2e-6
     assert magnus_campaign.expected_core_seconds(keys) == pytest.approx(grains * steps / 313e6)
     assert magnus_campaign.expected_core_seconds({**keys, "travel": None}) == pytest.approx(grains * steps / 313e6)
-    assert magnus_campaign.expected_core_seconds({**keys, "dt_factor": 2.0}) == pytest.approx(grains * steps / 900e6)
+    assert magnus_campaign.expected_core_seconds({**keys, "dt_factor": 2.0}) == pytest.approx(grains * steps / 626e6)
