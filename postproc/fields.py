@@ -12,6 +12,7 @@ LABELS = {
     "density": r"$\rho$",
     "temperature": r"$T_g$",
     "pressure": r"$P$",
+    "contact_pressure": r"$P_\mathrm{c}$",
     "speed": r"$|\mathbf{v}|$",
 }
 UNITS = {
@@ -51,10 +52,15 @@ class Fields:
         return self.of_phase(known[name], phase)
 
     def scalars(self):
-        """Return {name: (phases, ny, nx)} of all scalar fields, the speed of the mean velocity among them."""
+        """Return {name: (phases, ny, nx)} of all scalar fields.
+
+        Among them are the speed of the mean velocity, and the contact pressure, half the trace of the contacts' stress.
+        """
         found = {name: array for name, array in self.arrays.items() if array.ndim == 3}
         if "velocity" in self.arrays:
             found["speed"] = np.hypot(*np.moveaxis(self.arrays["velocity"], -1, 0))
+        if "contact_stress" in self.arrays:
+            found["contact_pressure"] = np.trace(self.arrays["contact_stress"], axis1=-2, axis2=-1) / 2
         return found
 
     def velocity(self, phase=None):

@@ -57,6 +57,41 @@ def mean_of(repeats):
     return Measured(float(values.mean()), own if np.isnan(scatter) else float(np.fmax(own, scatter)))
 
 
+def birge_ratio(groups):
+    """Return by how much repeats scatter more than their own errors say, pooled over groups of `Measured`; at least 1.
+
+    sqrt(chi²/freedom) of the repeats about their groups' weighted means (R. T. Birge, Phys. Rev. 40, 207, 1932). Many
+    groups of two or three repeats, none of which says much of its own error, say together whether errors are too small.
+    Repeats without a known error do not count; 1 where nothing is repeated.
+    """
+    chi_squared, freedom = 0.0, 0
+    for group in groups:
+        values, errors = np.array([(m.value, m.error) for m in group], dtype=float).reshape(-1, 2).T
+        known = np.isfinite(values) & np.isfinite(errors) & (errors > 0)
+        if known.sum() > 1:
+            values, weights = values[known], errors[known] ** -2
+            mean = np.sum(weights * values) / weights.sum()
+            chi_squared, freedom = (
+                chi_squared + float(np.sum(weights * (values - mean) ** 2)),
+                freedom + known.sum() - 1,
+            )
+    return max(1.0, float(np.sqrt(chi_squared / freedom))) if freedom else 1.0
+
+
+@dataclass(frozen=True)
+class Limit(Measured):
+    """A bound where a number was not reached: its value lies above `value` (`side` ">") or below it ("<")."""
+
+    side: str = ">"
+
+    def __str__(self):
+        return f"{self.side} {self.value:.4g}"
+
+    def excludes(self, low, high):
+        """True if no number between `low` and `high` is possible."""
+        return self.value >= high if self.side == ">" else self.value <= low
+
+
 def polynomial_through(x, points, degree):
     """Return the coefficients, highest power first, of the polynomial through points (n `Measured`) at exact x (n,).
 

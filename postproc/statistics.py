@@ -1,4 +1,4 @@
-"""Means with standard errors of correlated series, and the drift of a driven body.
+"""Means with standard errors of correlated series.
 
 Blocking: H. Flyvbjerg, H. G. Petersen, J. Chem. Phys. 91, 461 (1989), with the stopping rule of
 M. Jonsson, Phys. Rev. E 98, 043304 (2018).
@@ -102,76 +102,3 @@ def chi_squared_99(degrees):
     """Return the 99 % quantile of χ² for arrays of degrees of freedom (Wilson and Hilferty 1931; within 2 %)."""
     a = 2 / (9 * np.asarray(degrees, dtype=float))
     return degrees * (1 - a + 2.3263478740408408 * np.sqrt(a)) ** 3
-
-
-@dataclass(frozen=True)
-class Drift:
-    """Mean velocity with standard error over the cycles from `start` to `end` (times), and the cycle means it rests on."""
-
-    rate: float
-    error: float
-    start: float
-    end: float
-    cycle_t: np.ndarray
-    cycle_y: np.ndarray
-
-
-def drift(t, y, period, *, skip=0.1, rest=0.25):
-    """Return the `Drift` of a body that is shaken with `period`: mean of the cycle means' increments over the period.
-
-    `t`, `y` (n,): time and position, t rising. The first part `skip` of the run is left out. If the body comes to rest,
-    within `rest` of its final position for a tenth of the run and five cycles or more, the average ends there. With
-    fewer than two cycles in the window the rate is NaN.
-    """
-    t, y = np.asarray(t, dtype=float), np.asarray(y, dtype=float)
-    cycle_t, cycle_y = cycle_means(t, y, period)
-    first = int(np.searchsorted(cycle_t, t[0] + skip * (t[-1] - t[0]))) if len(t) else 0
-    last = end_of_motion(cycle_y, first, rest)
-    if last - first < 2:
-        return Drift(float("nan"), float("nan"), float("nan"), float("nan"), cycle_t, cycle_y)
-    steps = block_mean(np.diff(cycle_y[first:last]) / period)
-    return Drift(steps.value, steps.error, float(cycle_t[first]), float(cycle_t[last - 1]), cycle_t, cycle_y)
-
-
-def cycle_means(t, y, period):
-    """Return (times of the middles, mean positions) of the whole periods that a series covers; trapezoidal in time."""
-    cycles = int((t[-1] - t[0]) / period * (1 + 1e-12)) if len(t) > 1 else 0
-    edges = t[0] + period * np.arange(cycles + 1) if cycles else np.zeros(1)
-    integral = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))]) if cycles else np.zeros(1)
-    integral_at_edges = np.array([integral_to(edge, t, y, integral) for edge in edges]) if cycles else np.zeros(1)
-    return 0.5 * (edges[1:] + edges[:-1]), np.diff(integral_at_edges) / period
-
-
-def integral_to(edge, t, y, integral):
-    """Return the integral of the piecewise linear y(t) from t[0] to `edge`."""
-    k = int(np.clip(np.searchsorted(t, edge, side="right") - 1, 0, len(t) - 2))
-    y_edge = np.interp(edge, t, y)
-    return integral[k] + 0.5 * (y[k] + y_edge) * (min(edge, t[-1]) - t[k])
-
-
-def end_of_motion(cycle_y, first, rest):
-    """Return the number of cycles until the body has come to rest at its final position; all of them if it has not."""
-    if len(cycle_y) == 0:
-        return 0
-    final = cycle_y[-5:].mean()
-    moving = np.flatnonzero(np.abs(cycle_y - final) > rest)
-    arrival = moving[-1] + 2 if len(moving) else 0
-    rests_long = len(cycle_y) - arrival >= max(5, 0.1 * len(cycle_y))
-    return int(arrival) if rests_long and arrival - first >= 2 else len(cycle_y)
-
-
-def phase_rates(t, y, period, start, end, parts=20):
-    """Return (phases, rates, errors), each (parts,): mean velocity of a shaken body in each part of the cycle.
-
-    `t`, `y` (n,): time from the drive's start, and position, interpolated linearly; whole cycles between the times `start`
-    and `end` count. Phases are the parts' middles in cycles, in (0, 1); errors are standard errors over the cycles.
-    NaN where no whole cycle lies between, errors NaN where only one does.
-    """
-    phases = (np.arange(parts) + 0.5) / parts
-    first, last = np.ceil(start / period - 1e-9), np.floor(end / period + 1e-9)
-    if not last > first:  # NaN where nothing was averaged
-        return phases, np.full(parts, np.nan), np.full(parts, np.nan)
-    edges = period * (first + np.arange(int(last - first) * parts + 1) / parts)
-    rates = np.diff(np.interp(edges, t, y)).reshape(-1, parts) * parts / period
-    means = [block_mean(column) for column in rates.T]
-    return phases, np.array([m.value for m in means]), np.array([m.error for m in means])

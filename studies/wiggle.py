@@ -45,7 +45,7 @@ from graindrive import engines, fields, headless, intruder, lid, packing, progre
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import quantity  # noqa: E402
-from graindrive.postproc.statistics import drift, phase_rates  # noqa: E402
+from graindrive.postproc.drift import drift, phase_rates  # noqa: E402
 from graindrive.postproc.wiggle import figure  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
@@ -196,7 +196,7 @@ def keep_rates(p, folder, t, y):
     """Store V_y by the paper's rule, from a tenth of the run to arrest, with its error, and V_y by phase."""
     rise = drift(t, y, p.period, skip=SKIPPED)
     folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)
-    folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, y_final=y[-1] - y[0])
+    folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, rise_until=rise.end, y_final=y[-1] - y[0])
     phases, rates, errors = phase_rates(t, y, p.period, rise.start, rise.end, PHASES)
     folder.write("phase", dict(phase=(phases, "T"), vy=(rates, "sqrt(d g)"), vy_err=(errors, "sqrt(d g)")))
 

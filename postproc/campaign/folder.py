@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..measured import birge_ratio
 from ..reader import Run, RunError
+from .runs import measurements
 
 FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
 NOT_IN_TABLE = ("out", "resume", "redo", "vtk")  # keys of a study that say nothing of its result
@@ -15,10 +17,14 @@ NOT_IN_TABLE = ("out", "resume", "redo", "vtk")  # keys of a study that say noth
 
 @dataclass(frozen=True)
 class Campaign:
-    """A campaign's `folder` and its `plan` (the content of campaign.json); raises RunError if the folder has none."""
+    """A campaign's `folder` and its `plan` (the content of campaign.json); raises RunError if the folder has none.
+
+    `pooled` names quantities whose errors the table widens to the scatter of repeats over the whole campaign.
+    """
 
     folder: Path
     plan: dict
+    pooled: tuple = ()
 
     @classmethod
     def of(cls, folder):
@@ -34,9 +40,26 @@ class Campaign:
 
         A quantity that is named like a key but differs from it (a packing's phi) stands under NAME_measured.
         """
+        table = self.as_measured
+        factors = {f"{name}_err": pd.to_numeric(table[f"{name}_err"]) * factor for name, factor in self.widened.items()}
+        return table.assign(**factors)
+
+    @cached_property
+    def as_measured(self):
+        """The table with the errors that each run gave."""
         rows = [row for row in map(self.row, self.plan["runs"]) if row]
         table = pd.DataFrame(rows, columns=None if rows else ["run", "sweeps"])
         return table.sort_values(self.varied(table) or ["run"], kind="stable", ignore_index=True)
+
+    @cached_property
+    def widened(self):
+        """Return {quantity: the factor, 1 or more, by which repeats scatter more than their errors say} for `pooled` ones."""
+        table = self.as_measured
+        settings = [key for key in self.varied(table) if key != "seed"]
+        keys = settings[0] if len(settings) == 1 else settings
+        groups = [group for _, group in table.groupby(keys, dropna=False)] if settings else [table]
+        known = [name for name in self.pooled if {name, f"{name}_err"} <= set(table)]
+        return {name: birge_ratio([measurements(group, name) for group in groups]) for name in known}
 
     def row(self, planned):
         """Return the table's row of one planned run; None if it is not complete."""

@@ -2,7 +2,7 @@
 
 import importlib
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .. import figures
 from .folder import Campaign
@@ -46,11 +46,13 @@ class PlannedFigure:
 def write_report(folder):
     """Write `table.csv` and, where the campaign has a report, its figures and `report.md`; return the last written."""
     campaign = Campaign.of(folder)
+    report = campaign.plan["report"]
+    study = importlib.import_module(f"..{report}.campaign", __package__) if report else None
     table = campaign.folder / "table.csv"
-    write_text(table, campaign.table.to_csv(index=False))
-    if not campaign.plan["report"] or campaign.table.empty:
+    write_text(table, campaign.as_measured.to_csv(index=False))
+    campaign = replace(campaign, pooled=getattr(study, "POOLED", ()))
+    if not study or campaign.table.empty:
         return table
-    study = importlib.import_module(f"..{campaign.plan['report']}.campaign", __package__)
     (campaign.folder / "figures").mkdir(exist_ok=True)
     write_text(campaign.folder / "report.md", as_markdown(campaign, study.TITLE, sections_of(campaign, study.FIGURES)))
     return campaign.folder / "report.md"
@@ -91,6 +93,11 @@ def settings(campaign):
             f"{len(table)} runs of `{plan['study']}`" + (f" ({missing} more are missing)" if missing else "") + "; "
             f"{cost(table)}. Repeat: `scripts/campaign {plan['file']}`.",
             f"Varied: {varied or 'nothing'}. The same in all runs: {common}.",
+            *(
+                f"Repeats of `{name}` scatter {factor:.2f} times as much as the runs' own errors say, over all settings together;"
+                " its errors are those of the runs times this."
+                for name, factor in campaign.widened.items()
+            ),
         ]
     )
 

@@ -7,9 +7,14 @@ from ..measured import Measured, mean_of
 
 def quantity(rows, name):
     """Return a quantity of summary.json, averaged over the rows of a table (repeats), as `Measured`."""
+    return mean_of(measurements(rows, name))
+
+
+def measurements(rows, name):
+    """Return a quantity of each row that has it, a list of `Measured`."""
     errors = rows[f"{name}_err"] if f"{name}_err" in rows else [np.nan] * len(rows)
-    pairs = [(v, e) for v, e in zip(rows[name], errors)] if name in rows else []
-    return mean_of([Measured(float(v), as_error(e)) for v, e in pairs if is_number(v)])
+    pairs = zip(rows[name], errors) if name in rows else []
+    return [Measured(float(v), as_error(e)) for v, e in pairs if is_number(v)]
 
 
 def is_number(value):

@@ -10,7 +10,7 @@ from enum import Enum
 
 import numpy as np
 
-from ..measured import Measured
+from ..measured import Limit, Measured
 
 SIGMAS = 2
 
@@ -46,7 +46,10 @@ class Agrees:
     resolution: float
 
     def judge(self, measured):
-        """Return the verdict."""
+        """Return the verdict; a `Limit` can only tell against the claim."""
+        if isinstance(measured, Limit):
+            out = measured.excludes(self.expected - self.tolerance, self.expected + self.tolerance)
+            return Verdict.NOT_REPRODUCED if out else Verdict.NOT_DECIDED
         if not is_known(measured):
             return Verdict.NOT_DECIDED
         if abs(measured.value - self.expected) > self.tolerance + SIGMAS * measured.error:
@@ -67,12 +70,22 @@ class Between:
 
     def judge(self, measured):
         """Return the verdict."""
+        if isinstance(measured, Limit):
+            return self.judge_limit(measured)
         low, high = interval(measured)
         if not is_known(measured):
             return Verdict.NOT_DECIDED
         if self.low < low and high < self.high:
             return Verdict.REPRODUCED
         return Verdict.NOT_REPRODUCED if high < self.low or low > self.high else Verdict.NOT_DECIDED
+
+    def judge_limit(self, limit):
+        """Return the verdict on a number of which only a bound is known."""
+        if limit.excludes(self.low, self.high):
+            return Verdict.NOT_REPRODUCED
+        open_side = self.high if limit.side == ">" else -self.low
+        within = limit.value >= self.low if limit.side == ">" else limit.value <= self.high
+        return Verdict.REPRODUCED if np.isinf(open_side) and within else Verdict.NOT_DECIDED
 
     def __str__(self):
         if np.isinf(self.high):

@@ -15,6 +15,7 @@ SWEEPS = {
     "fields": "fields=1, one period, disk, tall and triangle",
     "scene": "scenes by width, height, depth, lid, lid_pressure and dt_factor, the largest of them the paper's",
 }
+POOLED = ("rise_rate",)
 RATE = 90e6  # particle-steps per second of one core (README)
 TIME_STEP = 1e-4  # of the study [sqrt(d/g)]
 GRAINS_PER_AREA = 0.84 / (np.pi / 4)  # of a settled bed [1/d^2]
@@ -62,7 +63,8 @@ FIGURES = (
         "table1",
         "periods",
         "Table 1: the first period that rises",
-        "At A = 5 d, between the last period that sinks and the first that rises.",
+        "At A = 5 d, where a line from the last period that sinks to the next crosses zero; a triangle is a bound: it never rose"
+        " up to there (up), or rose from there on (down).",
         period_claims.table_claims,
         plots.first_periods,
     ),
@@ -86,7 +88,7 @@ FIGURES = (
         "fig6",
         "friction",
         "Fig. 6: rise rate against friction",
-        "Rise rate against the friction coefficient. Paper: it grows with friction and saturates at 0.5.",
+        "Rise rate against the friction coefficient. Paper: it grows with friction, up to the 0.5 that it goes to.",
         claims.friction_claims,
         plots.against_friction,
     ),
@@ -94,8 +96,8 @@ FIGURES = (
         "fig8",
         "phases",
         "Fig. 8: rise rate by phase",
-        "Rise rate in the twentieth parts of a cycle; dotted where the body turns. Paper: it climbs as it moves out and sinks"
-        " as it moves back.",
+        "Rise rate in the twentieth parts of a cycle; dotted where the body turns. Paper: V_y grows as it moves out and falls"
+        " as it moves back, so that it is largest where it turns.",
         claims.phase_claims,
         plots.against_phase,
     ),
@@ -103,7 +105,8 @@ FIGURES = (
         "fig9",
         "fields",
         "Figs. 9 to 11: fields around the body",
-        "Area fraction, speed and pressure by phase, by Gaussian coarse-graining (w = 1 d, cut at 3 w). Paper: a wake behind,"
+        "Area fraction, speed of the mean velocity and pressure of the contacts (Eq. 3.4) by phase, by Gaussian"
+        " coarse-graining (w = 1 d, cut at 3 w). Paper: a wake behind,"
         " the pressure in front.",
         claims.field_claims,
         plots.around_body,

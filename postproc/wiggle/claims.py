@@ -7,9 +7,11 @@ import numpy as np
 from ..campaign.claims import claim_on
 from ..campaign.runs import curve, over_repeats, quantity
 from ..campaign.verdicts import Agrees, above, below
-from ..measured import polynomial_through
+from ..measured import UNKNOWN, Measured, polynomial_through
 from . import runs
 from .runs import RATE, by_shape
+
+PRESSURE = "contact_pressure"  # Eqs. 3.3 and 3.4 hold contacts alone
 
 claim = partial(claim_on, dict(shape=("", ""), amplitude=("A", ""), period=("T", ""), mu=("μ", "")))
 
@@ -35,16 +37,38 @@ def friction_claims(_campaign, rows):
 
 
 def phase_claims(campaign, rows):
-    """The disk climbs on its way out and not on its way back, twice a cycle."""
+    """V_y swings twice a cycle: what the two halves of that swing are, and whether it turns V_y over."""
     claims = []
     for where, group in by_shape_and_period(rows):
-        _, points = runs.phase_curve(campaign, group)
-        quarter = len(points) // 4
-        first, second, third, fourth = (runs.mean_over(points[k * quarter : (k + 1) * quarter]) for k in range(4))
-        gained = runs.mean_over([first, third]) - runs.mean_over([second, fourth])
-        text = f"{where}: it climbs while it moves out; V_y moving out less V_y moving back"
-        claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", gained, above(0)))
+        parts = len(runs.phase_curve(campaign, group)[0])
+        turning, moving_out = (runs.phase_sum(campaign, group, weights) for weights in swings(parts))
+        text = f"{where}: V_y is largest where it turns; cos(2ωt) part of V_y, from turns to centre"
+        claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", turning, above(0)))
+        text = f"{where}: it climbs while it moves out; sin(2ωt) part of V_y"
+        claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", moving_out, above(0)))
+        if group["shape"].iloc[0] == "disk":
+            both = swing_size(turning, moving_out) - mean_size(quantity(group, RATE))
+            text = f"{where}: it rises and sinks within each cycle; amplitude of the swing less |V_y|"
+            claims.append(claim(group, text, "section 3.3", "> 0", both, above(0)))
     return claims
+
+
+def swings(parts):
+    """Return the weights (parts,) that give the amplitudes of -cos(2wt) and of sin(2wt), both of V_y averaged in parts."""
+    angle = 4 * np.pi * (np.arange(parts) + 0.5) / parts
+    smoothed = np.sinc(2 / parts)  # of either wave, by the mean over a part
+    return -2 * np.cos(angle) / parts / smoothed, 2 * np.sin(angle) / parts / smoothed
+
+
+def swing_size(a, b):
+    """Return the amplitude of a wave from those of its two parts, as `Measured`, error to first order."""
+    size = float(np.hypot(a.value, b.value))
+    return Measured(size, float(np.hypot(a.value * a.error, b.value * b.error) / size)) if size else UNKNOWN
+
+
+def mean_size(measured):
+    """Return a number without its sign."""
+    return Measured(abs(measured.value), measured.error)
 
 
 def drive_claims(_campaign, rows):
@@ -90,26 +114,59 @@ def scene_name(keys):
 # ---- Figs. 9 to 11 ---------------------------------------------------------------------------------------------------
 
 
+TURNED, BACK = 5, 10  # phases 10 phi/pi: just turned at the right, and at the centre on the way back
+
+
 def field_claims(campaign, rows):
-    """At mid-stroke to the right: fewer grains behind the body, and the pressure in front of it."""
+    """A wake behind the body and the pressure in front of it, on both ways; which wakes are larger."""
     claims = []
+    wakes = {}
     for shape, group in by_shape(rows):
-        wake = beside_difference(campaign, group, "area_fraction")
+        source = "section 3.4, Figs. 9-11"
+        behind = beside(campaign, group, "area_fraction", 0)
         text = f"{shape}: a wake behind it at phase 0; area fraction on the left less that on the right"
-        claims.append(claim(group, text, "Figs. 9-11(a)", "< 0", wake, below(0)))
-        pressure = beside_difference(campaign, group, "pressure")
-        text = f"{shape}: the pressure is in front at phase 0; pressure on the left less that on the right"
-        claims.append(claim(group, text, "Figs. 9-11(k)", "< 0", pressure, below(0)))
+        claims.append(claim(group, text, source, "< 0", over_repeats(behind), below(0)))
+        for phase, way, rule, sign in ((0, "right", below(0), "< 0"), (BACK, "left", above(0), "> 0")):
+            pressure = beside(campaign, group, PRESSURE, phase)
+            text = f"{shape}: the pressure is in front as it moves {way}; pressure on the left less that on the right"
+            claims.append(claim(group, text, source, sign, over_repeats(pressure), rule))
+        wakes[shape] = beside(campaign, group, "area_fraction", TURNED)
+        text = f"{shape}: the wake is larger where it turns than at phase 0; area fraction, left less right, turned less centre"
+        claims.append(claim(group, text, source, "< 0", over_repeats(wakes[shape] - behind), below(0)))
+    if {"disk", "tall"} <= wakes.keys():
+        larger = over_repeats(wakes["tall"]) - over_repeats(wakes["disk"])
+        text = (
+            "the wake of the tall rectangle is larger than the disk's; area fraction, left less right, where they turn"
+        )
+        claims.append(claim(rows[rows["shape"].isin(["disk", "tall"])], text, "section 3.4", "< 0", larger, below(0)))
     return claims
 
 
-def beside_difference(campaign, rows, name):
-    """Return the mean of a field within 3 d left of the body less that right of it, at the first phase, over repeats."""
-    half = float(np.ptp(campaign.run(rows["run"].iloc[0]).group("intruder")["outline"][:, 0])) / 2
-    values = []
+def beside(campaign, rows, name, phase):
+    """Return the mean of a field within 3 d left of the body less that right of it at a phase, of each repeat (runs,)."""
+    outline = campaign.run(rows["run"].iloc[0]).group("intruder")["outline"]
+    differences = []
     for field in runs.field_runs(campaign, rows):
-        level, near = np.abs(field.y) < 2, (np.abs(field.x) > half + 0.5) & (np.abs(field.x) < half + 3.5)
-        beside = field.map(name, 0)
-        left, right = (np.nanmean(beside[np.ix_(level, near & side)]) for side in (field.x < 0, field.x > 0))
-        values.append(left - right)
-    return over_repeats(values)
+        left, right = sides(outline, field.x, field.y)
+        values = field.map(name, min(phase, len(field.samples) - 1))
+        differences.append(np.nanmean(values[left]) - np.nanmean(values[right]))
+    return np.array(differences)
+
+
+def sides(outline, x, y):
+    """Return masks (ny, nx) of what lies 0.5 d to 3.5 d left, and right, of a polygon (n, 2), about its middle height."""
+    low, high = outline[:, 1].min(), outline[:, 1].max()
+    masks = np.zeros((2, len(y), len(x)), dtype=bool)
+    for row in np.flatnonzero(np.abs(y - (low + high) / 2) < (high - low) / 4):
+        left, right = crossings(outline, y[row])
+        masks[0, row], masks[1, row] = (x > left - 3.5) & (x < left - 0.5), (x > right + 0.5) & (x < right + 3.5)
+    return masks
+
+
+def crossings(outline, height):
+    """Return the least and the largest x at which a polygon (n, 2) crosses a height within it."""
+    a, b = outline, np.roll(outline, -1, axis=0)
+    crossed = (a[:, 1] - height) * (b[:, 1] - height) < 0
+    along = (height - a[crossed, 1]) / (b[crossed, 1] - a[crossed, 1])
+    x = a[crossed, 0] + along * (b[crossed, 0] - a[crossed, 0])
+    return x.min(), x.max()

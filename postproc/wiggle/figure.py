@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, draw_chains, draw_grains, save
 from ..reader import BASE, GRAIN, INTRUDER, Run
-from ..statistics import drift, phase_rates
+from ..drift import drift, phase_rates
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
 NAMES = {"disk": "disk", "square": "square", "tall": "tall rectangle", "wide": "wide rectangle", "triangle": "triangle"}

@@ -10,6 +10,7 @@ from .. import figures
 from ..campaign.plots import COLOURS, canvas, draw_points, look, share_y
 from ..campaign.runs import curve, quantity
 from ..figures import BLACK, GREY, VERMILLION
+from ..measured import UNKNOWN, Limit
 from . import runs
 from .cavity_model import smallest_amplitude
 from .claims import scenes_of
@@ -70,7 +71,10 @@ def first_periods(campaign, rows, claims):
     model = [runs.model_of(group).first_rising_period for _, group in groups]
     axes.plot(places, model, "_", color=VERMILLION, markersize=16, label="cavity model, Eq. 3.14")
     found = [runs.first_rising_period(group) for _, group in groups]
-    draw_points(axes, places, found, fmt="o", color=BLACK, label="measured")
+    numbers = [(place, m) for place, m in zip(places, found) if not isinstance(m, Limit)]
+    draw_points(axes, *zip(*numbers or [(0, UNKNOWN)]), fmt="o", color=BLACK, label="measured")
+    for place, limit in ((place, m) for place, m in zip(places, found) if isinstance(m, Limit)):
+        axes.plot(place, limit.value, "^" if limit.side == ">" else "v", color=BLACK, markersize=5, fillstyle="none")
     axes.plot([], [], color=GREY, linewidth=7, label="observed in the paper")
     axes.set_xticks(places, [title(shape).replace(", ", "\n") for shape, _ in groups])
     axes.set(ylabel=f"first rising {PERIOD_LABEL}", xlim=(-0.6, len(groups) - 0.4), ylim=(0, None))
@@ -187,7 +191,7 @@ def of_scenes(campaign, rows, claims):
 def around_body(campaign, rows, claims):
     """Figs. 9 to 11: area fraction, speed and pressure around the body by phase, rows of panels for each shape."""
     groups, phases = list(by_shape(rows)), (0, 5, 10, 15, 19)
-    names = (("area_fraction", "Greys"), ("speed", "viridis"), ("pressure", "inferno"))
+    names = (("area_fraction", "Greys"), ("speed", "viridis"), ("contact_pressure", "inferno"))
     height = 1.35 * 3 * len(groups)
     figure, axes = canvas(3 * len(groups), len(phases), claims, width=2 * figures.COLUMN_WIDTH, height=height)
     for block, (shape, group) in enumerate(groups):
@@ -201,7 +205,8 @@ def around_body(campaign, rows, claims):
                 panel.add_patch(Polygon(outline, facecolor="white", edgecolor=BLACK, linewidth=0.8))
                 panel.set(aspect="equal", xticks=[-10, 0, 10], yticks=[-10, 0, 10])
                 panel.label_outer()
-            line[0].set_ylabel(f"{title(shape)}\n{name.replace('_', ' ')}" if name == names[0][0] else name)
+            words = name.replace("contact_", "").replace("_", " ")
+            line[0].set_ylabel(f"{title(shape)}\n{words}" if name == names[0][0] else words)
             figure.colorbar(image, ax=list(line), shrink=0.8)
     for panel, k in zip(axes[0], phases):
         panel.set_title(f"10φ/π = {k}")

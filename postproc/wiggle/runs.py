@@ -3,13 +3,17 @@
 import numpy as np
 
 from .. import fields
-from ..campaign.runs import at, curve
-from ..measured import UNKNOWN, Measured, mean_of
+from ..campaign.runs import at, curve, quantity
+from ..campaign.verdicts import SIGMAS
+from ..drift import drift
+from ..drift import phase_sum as phase_sum_over
+from ..measured import UNKNOWN, Limit, Measured, mean_of
 from .cavity_model import CavityModel
 
 SHAPES = ("disk", "square", "tall", "wide", "triangle")  # OS1 to OS5
 TITLES = dict(zip(SHAPES, ("disk, OS1", "square, OS2", "tall rectangle, OS3", "wide rectangle, OS4", "triangle, OS5")))
 RATE = "rise_rate"
+TURN = 2.0  # period between sinking and rising at A = 3 d, section 3.2
 NEGLIGIBLE = 0.1  # of the fastest motion: our reading of the paper's "negligible"
 
 
@@ -35,9 +39,24 @@ def rates(rows):
     return curve(rows, "period", RATE) if len(rows) else (np.zeros(0), [])
 
 
+def least_rate(rows):
+    """Return the lowest rise rate over the periods, UNKNOWN without runs."""
+    return min(rates(rows)[1], key=lambda m: m.value, default=UNKNOWN)
+
+
 def fastest_rise(rows):
     """Return the largest rise rate over the periods, UNKNOWN without runs."""
     return max(rates(rows)[1], key=lambda m: m.value, default=UNKNOWN)
+
+
+def rate_at(rows, period):
+    """Return the rise rate at one period, UNKNOWN without a run there."""
+    return quantity(at(rows, period=period), RATE)
+
+
+def mean_rise(rows):
+    """Return the mean rise rate over the periods beyond TURN: a maximum would grow with the noise of what it is taken from."""
+    return mean_over(rates(rows[rows["period"] > TURN])[1])
 
 
 def largest_motion(rows):
@@ -62,18 +81,23 @@ def smallest_moving_amplitude(rows):
 def last_zero(x, points):
     """Return where a curve through points (n `Measured`) at rising x (n,) turns positive on the way to its maximum.
 
-    Linear between the two points about the zero; the error is that of the two. UNKNOWN where all points below the maximum
-    are positive, or none is.
+    Linear between the two points about the zero; the error is that of the two. Where all points below the maximum are
+    positive, or none is, a `Limit`: the zero lies below the first that is so by two standard errors, or above the last that
+    is not. UNKNOWN where there is none.
     """
-    values = np.array([m.value for m in points])
-    if not len(values) or not values.max() > 0:
+    values, errors = np.array([(m.value, m.error) for m in points]).reshape(-1, 2).T
+    if not len(values):
         return UNKNOWN
     best = int(values.argmax())
     below = np.flatnonzero(values[:best] <= 0)
-    if not len(below):
-        return UNKNOWN
-    k = int(below[-1])
-    return zero_between(x[k], points[k], x[k + 1], points[k + 1])
+    if values[best] > 0 and len(below):
+        k = int(below[-1])
+        return zero_between(x[k], points[k], x[k + 1], points[k + 1])
+    if values[best] > 0:
+        surely = x[values - SIGMAS * errors > 0]
+        return Limit(float(surely[0]), np.nan, "<") if len(surely) else UNKNOWN
+    surely = x[values + SIGMAS * errors < 0]
+    return Limit(float(surely[-1]), np.nan, ">") if len(surely) else UNKNOWN
 
 
 def zero_between(x_low, low, x_high, high):
@@ -99,8 +123,25 @@ def phase_curve(campaign, rows):
     return groups[0]["phase"], [mean_of([Measured(float(v), float(e)) for v, e in column]) for column in columns]
 
 
+def phase_sum(campaign, rows, weights):
+    """Return the sum over the parts of a cycle of `weights` (parts,) times V_y there, over repeats, as `Measured`."""
+    return mean_of([found for name in rows["run"] if (found := phase_sum_of(campaign.run(name), weights))])
+
+
+def phase_sum_of(run, weights):
+    """Return that sum of one run, as `Mean`; None where the run holds no whole cycle."""
+    t, y, period = run.series["t"], run.series["y"], float(run.parameters["period"])
+    window = drift(t, y, period)
+    return phase_sum_over(t, y, period, window.start, window.end, weights)
+
+
+# ---- means -----------------------------------------------------------------------------------------------------------
+
+
 def mean_over(points):
-    """Return the mean of `Measured` parts of a cycle; their errors are taken as independent."""
+    """Return the mean of independent `Measured` numbers, UNKNOWN of none."""
+    if not points:
+        return UNKNOWN
     values, errors = np.array([(m.value, m.error) for m in points]).T
     return Measured(float(values.mean()), float(np.sqrt(np.sum(errors**2)) / len(points)))
 

@@ -1,4 +1,4 @@
-"""Standard errors against processes whose error is known, and the drift of shaken bodies whose motion is known."""
+"""Standard errors against processes whose error is known."""
 
 import numpy as np
 import pytest
@@ -7,9 +7,6 @@ from hypothesis import given, strategies as st
 from graindrive.postproc.statistics import (
     block_mean,
     chi_squared_99,
-    cycle_means,
-    drift,
-    phase_rates,
     ratio_mean,
     steady_start,
 )
@@ -82,53 +79,6 @@ def test_quantiles_of_chi_squared():
     assert [chi_squared_99(np.array([k]))[0] for k in table] == pytest.approx(list(table.values()), rel=0.02)
 
 
-def shaken(rate, period=4.0, end=400.0, points=4001, noise=0.0):
-    t = np.linspace(0, end, points)
-    return t, rate * t + 0.3 * np.sin(2 * np.pi * t / period) + noise * np.random.default_rng(4).normal(size=points)
-
-
-def test_cycle_means_of_a_line_are_its_middles():
-    t, y = shaken(0.01)
-    cycle_t, cycle_y = cycle_means(t, y, 4.0)
-    assert len(cycle_t) == 100 and np.allclose(cycle_t, 2 + 4 * np.arange(100))
-    assert np.allclose(cycle_y, 0.01 * cycle_t, atol=1e-12), "the sine has no mean over its period"
-
-
-def test_cycle_means_do_not_need_the_period_to_be_a_multiple_of_the_sampling():
-    t, y = shaken(0.02, period=3.7, points=4117)
-    _, cycle_y = cycle_means(t, y, 3.7)
-    assert np.allclose(np.diff(cycle_y) / 3.7, 0.02, atol=1e-4)
-
-
-@pytest.mark.parametrize("rate", [-0.03, 0.0, 0.02])
-def test_drift_of_a_steady_riser(rate):
-    found = drift(*shaken(rate), 4.0)
-    assert found.rate == pytest.approx(rate, abs=1e-9) and found.error < 1e-9
-    assert found.start == pytest.approx(42) and found.end == pytest.approx(398)
-
-
-def test_drift_lies_within_its_error_for_a_random_ratchet():
-    """Steps of 0.1 ± 0.5 per cycle, independent: the error of 450 of them is 0.5/sqrt(450)/T."""
-    rng, inside = np.random.default_rng(5), 0
-    for _ in range(40):
-        position = np.repeat(np.cumsum(rng.normal(0.1, 0.5, 500)), 20)
-        found = drift(np.arange(10000) * 0.2, position, 4.0)
-        assert found.error == pytest.approx(0.5 / np.sqrt(450) / 4, rel=0.5)
-        inside += abs(found.rate - 0.025) < 2 * found.error
-    assert inside >= 32, "95 % of 40 are 38; fewer than 32 happen once in 10^5"
-
-
-def test_drift_ends_where_the_body_rests():
-    t = np.linspace(0, 400, 4001)
-    found = drift(t, np.minimum(0.1 * t, 20.0), 4.0)
-    assert found.rate == pytest.approx(0.1, rel=0.03) and 196 <= found.end <= 208
-
-
-@pytest.mark.parametrize("t, y", [([], []), ([0.0], [1.0]), (np.linspace(0, 7, 50), np.zeros(50))])
-def test_too_short_for_a_drift(t, y):
-    assert np.isnan(drift(t, y, 4.0).rate)
-
-
 def test_error_of_a_ratio_of_correlated_series_is_that_of_many_repeats():
     """Lift = drag/2 + noise of its own: the common part drops out of the ratio, so its error is the noise's alone."""
     rng, n = np.random.default_rng(3), 4096
@@ -163,35 +113,3 @@ def test_a_transient_is_left_out_and_noise_is_not():
 def test_a_drift_to_the_end_is_not_steady():
     noise = autoregressive(4000, 0.7, np.random.default_rng(5))
     assert not steady_start(noise + np.linspace(0, 20, 4000))[1]
-
-
-def test_rates_by_phase_are_the_velocity_of_a_known_motion():
-    t, period = np.linspace(0, 40, 1601), 4.0
-    y = 0.1 * t + 0.3 * np.sin(2 * np.pi * t / period)
-    phases, rates, errors = phase_rates(t, y, period, 3.9, 40)
-    edges = 2 * np.pi * np.arange(21) / 20
-    expected = 0.1 + 0.3 * np.diff(np.sin(edges)) * 20 / period
-    assert phases == pytest.approx((np.arange(20) + 0.5) / 20)
-    assert rates == pytest.approx(expected, abs=1e-9)  # every edge is a sample, so interpolation is exact
-    assert np.all(errors < 1e-9)
-    assert rates.mean() == pytest.approx(0.1, abs=1e-9)
-
-
-def test_errors_of_rates_by_phase_are_those_of_independent_cycles():
-    rng, cycles, parts = np.random.default_rng(4), 900, 40
-    steps = rng.normal(size=cycles * parts)
-    y = np.concatenate([[0], np.cumsum(steps)]) / parts
-    _, rates, errors = phase_rates(np.arange(cycles * parts + 1) / parts, y, 1.0, 0, cycles, parts)
-    # Now and then blocks of more than one cycle are taken, which scatter more; 40 errors of a tenth each give 2 %.
-    assert np.sqrt(np.mean(errors**2)) == pytest.approx(1 / 30, rel=0.1)
-    assert np.sqrt(np.mean(rates**2)) == pytest.approx(1 / 30, rel=0.4)  # 3 sigma of 40 values
-
-
-@pytest.mark.parametrize(
-    "start, end, known", [(0, 0.5, 0), (0.2, 1.9, 0), (np.nan, np.nan, 0), (0.2, 2.0, 1), (0.0, 1.0, 1)]
-)
-def test_only_whole_cycles_make_rates_by_phase(start, end, known):
-    t = np.linspace(0, 3, 61)
-    _, rates, errors = phase_rates(t, t, 1.0, start, end, parts=4)
-    assert np.all(np.isnan(errors))
-    assert rates == pytest.approx(1.0) if known else np.all(np.isnan(rates))

@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graindrive.postproc.campaign.verdicts import Agrees, Between, Claim, Verdict, above, below, tally
-from graindrive.postproc.measured import Measured, mean_of, polynomial_through, power_of, steepest_place
+from graindrive.postproc.measured import (
+    Limit,
+    Measured,
+    birge_ratio,
+    mean_of,
+    polynomial_through,
+    power_of,
+    steepest_place,
+)
 
 RULES = [Agrees(1, 0.1, 0.2), above(0), below(3), Between(0, 3)]
 NUMBERS = st.floats(-1e6, 1e6)
@@ -56,6 +64,36 @@ def test_above_and_below_never_hold_both(value, error):
 )
 def test_rules_at_their_limits(rule, value, error, verdict):
     assert rule.judge(Measured(value, error)).value == verdict
+
+
+@pytest.mark.parametrize(
+    "rule, value, side, verdict",
+    [
+        (Agrees(2.75, 0.25, 1), 3.0, ">", "not reproduced"),
+        (Agrees(2.75, 0.25, 1), 2.9, ">", "not decided"),
+        (Agrees(2.75, 0.25, 1), 2.5, "<", "not reproduced"),
+        (Agrees(2.75, 0.25, 1), 2.6, "<", "not decided"),
+        (above(1), 1.5, ">", "reproduced"),
+        (above(1), 0.5, ">", "not decided"),
+        (above(1), 0.5, "<", "not reproduced"),
+        (above(1), 1.5, "<", "not decided"),
+        (below(1), 0.5, "<", "reproduced"),
+        (below(1), 1.5, ">", "not reproduced"),
+        (Between(0, 1), 0.5, ">", "not decided"),
+        (Between(0, 1), 1.0, ">", "not reproduced"),
+    ],
+)
+def test_a_bound_tells_for_a_claim_only_where_the_claim_is_a_bound_too(rule, value, side, verdict):
+    assert rule.judge(Limit(value, math.nan, side)).value == verdict
+
+
+def test_pooled_repeats_tell_how_much_too_small_their_errors_are():
+    rng = np.random.default_rng(6)
+    groups = [[Measured(m + rng.normal(0, 0.3), 0.1) for _ in range(2)] for m in rng.normal(size=200)]
+    assert birge_ratio(groups) == pytest.approx(3, rel=3 / np.sqrt(2 * 200))
+    honest = [[Measured(rng.normal(0, 0.1), 1.0) for _ in range(3)] for _ in range(10)]
+    assert birge_ratio(honest) == 1  # errors are never made smaller
+    assert birge_ratio([]) == birge_ratio([[Measured(1, 0.1)], [Measured(1, math.nan), Measured(2, 0.1)]]) == 1
 
 
 def test_rules_state_themselves():

@@ -2,6 +2,8 @@
 
 import itertools
 import json
+from dataclasses import replace
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
@@ -11,10 +13,10 @@ from graindrive.postproc.campaign import results
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
-from graindrive.postproc.measured import Measured
+from graindrive.postproc.measured import Limit, Measured
 from graindrive.postproc.wiggle import campaign as wiggle_campaign
 from graindrive.postproc.wiggle import runs as wiggle_runs
-from graindrive.postproc.wiggle.claims import drive_claims, phase_claims, scene_claims
+from graindrive.postproc.wiggle.claims import drive_claims, field_claims, phase_claims, scene_claims, sides
 from graindrive.postproc.wiggle.period_claims import (
     amplitude_claims,
     order_and_triangle_claims,
@@ -32,6 +34,8 @@ KEYS = dict(
 )  # fmt: skip
 SCENES = [dict(width=300.0, lid_pressure=0.0, n_grains=63000), dict(width=120.0, lid_pressure=46.2, n_grains=11500)]
 PHASE = (np.arange(20) + 0.5) / 20
+TIMES = np.linspace(0, 100, 4001)
+SWING = 0.3
 NOISE = 1e-3
 
 
@@ -45,16 +49,23 @@ def law(keys):
     return keys["amplitude"] / 5 * (sinking + rising) + (0.2 * (keys["mu"] - 0.1) if t > first else 0)
 
 
+def swung(period, noise):
+    """The way of a velocity SWING sin(2 w t), with its size a little other in each cycle."""
+    angle = 4 * np.pi * TIMES / period
+    size = 1 + 0.01 * np.array([noise() for _ in range(int(100 / period) + 1)])[(TIMES / period).astype(int)]
+    return SWING * size * (1 - np.cos(angle)) * period / (4 * np.pi)
+
+
 def write(folder, changes, noise, **facts):
     keys = {**KEYS, **changes}
     name = "-".join(f"{key}_{value}" for key, value in keys.items()).replace("/", "_")
     fall, height = FALL[keys["shape"]]
     rate = dict(rise_rate=law(keys) + NOISE * noise(), rise_rate_err=NOISE, fall_height=fall, intruder_height=height)
-    swing = 0.3 * np.cos(4 * np.pi * PHASE - np.pi / 2)  # up in the first and third quarter
+    swing = SWING * np.sin(4 * np.pi * PHASE)  # up in the first and third quarter
     groups = dict(
         phase=dict(phase=PHASE, vy=rate["rise_rate"] + swing, vy_err=np.full(20, 0.01)),
         intruder=dict(outline=np.array([[-3, -3], [3, -3], [3, 3], [-3, 3]], dtype=float)),
-        series=dict(t=np.linspace(0, 100, 50), y=40 + rate["rise_rate"] * np.linspace(0, 100, 50)),
+        series=dict(t=TIMES, y=40 + rate["rise_rate"] * TIMES + swung(keys["period"], noise)),
     )
     if keys["fields"]:
         groups["fields/around"] = made_up_fields(noise)
@@ -70,7 +81,8 @@ def made_up_fields(noise):
     fraction = np.broadcast_to(np.where(x < 0, 0.3, 0.8) + 0.01 * noise(), shape)
     pressure = np.broadcast_to(np.where(x < 0, 1.0, 50.0) + 0.01 * noise(), shape)
     velocity = np.ones((*shape, 2))
-    return dict(x=x, y=x, samples=np.full(20, 100), area_fraction=fraction, pressure=pressure, velocity=velocity)
+    stress = pressure[..., None, None] * np.eye(2)
+    return dict(x=x, y=x, samples=np.full(20, 100), area_fraction=fraction, contact_stress=stress, velocity=velocity)
 
 
 def campaign_of(folder, sweeps):
@@ -115,13 +127,21 @@ def test_a_paper_that_is_true_is_reproduced(tmp_path):
         )
     order = [c for c in claims if "rises faster than" in c.text]
     assert len(order) == 8 and {c.verdict for c in order} == {Verdict.REPRODUCED}
+    sinking = [c for c in claims if "sinks faster than" in c.text]  # all alike in these runs
+    assert len(sinking) == 6 and all(c.measured.value == pytest.approx(0, abs=4 * NOISE) for c in sinking)
+    assert judged["disk: it rises faster at A 5 than at A 3; difference of mean V_y at T > 2"] is Verdict.REPRODUCED
     assert all(c.verdict is Verdict.REPRODUCED for c in claims if "sinking is fastest at T = 1" in c.text)
     assert all(c.verdict is Verdict.REPRODUCED for c in claims if "barely rises" in c.text)
-    signs = [c for c in claims if "A 3: it " in c.text]
-    # In these runs square and tall rectangle sink up to 3.5 and 3.6: they do not rise at all T > 2.
-    late = ("square, A 3: it rises at T > 2; the least V_y", "tall, A 3: it rises at T > 2; the least V_y")
-    assert len(signs) == 8
-    assert {c.text for c in signs if c.verdict is not Verdict.REPRODUCED} == set(late)
+    signs = {c.text: c.verdict for c in claims if "A 3: it " in c.text}
+    # In these runs square and tall rectangle sink up to 3.5 and 3.6, and the triangle rises late.
+    late = {
+        "square, A 3: it rises at T > 2; the least V_y",
+        "tall, A 3: it rises at T > 2; the least V_y",
+        "triangle, A 3: it sinks at every period; the largest V_y",
+    }
+    assert len(signs) == 9
+    assert {text for text, verdict in signs.items() if verdict is not Verdict.REPRODUCED} == late
+    assert {signs[text] for text in late} == {Verdict.NOT_REPRODUCED}
     # The model's T_rise of the tall rectangle, 4.47, is not the 3.6 of these runs.
     assert judged["tall: first period that rises, cavity model"] is Verdict.NOT_REPRODUCED
     assert judged["disk: first period that rises, cavity model"] is Verdict.REPRODUCED
@@ -134,9 +154,9 @@ def test_a_paper_that_is_false_is_not_reproduced(tmp_path, monkeypatch):
     campaign = campaign_of(tmp_path, dict(periods=PERIOD_GRIDS[:1]))
     judged = {c.text: c.verdict for c in all_of_periods(campaign)}
     for text in (
-        "A 5: disk rises faster than tall; difference of the fastest rises",
+        "A 5: disk rises faster than tall; difference of mean V_y at T > 2",
         "disk: first period that rises, observed",
-        "A 5: the triangle sinks or barely rises; its fastest rise over the disk's",
+        "A 5: the triangle sinks or barely rises where the disk is fastest, T = 5; its V_y over the disk's",
     ):
         assert judged[text] is Verdict.NOT_REPRODUCED
 
@@ -149,12 +169,24 @@ def test_the_zero_of_a_line_and_its_error():
     assert zero.error == pytest.approx(np.std(2 - low / (high - low)), rel=0.05)  # first order of 10 to 20 % errors
 
 
-def test_a_body_that_always_or_never_rises_has_no_first_period(tmp_path, monkeypatch):
+def test_a_body_that_always_or_never_rises_has_a_bound_for_its_first_period(tmp_path, monkeypatch):
     campaign = campaign_of(tmp_path, dict(periods=[dict(shape=["disk"], period=[3.0, 4.0, 5.0])]))
-    assert np.isnan(wiggle_runs.first_rising_period(campaign.table).value)
+    assert wiggle_runs.first_rising_period(campaign.table) == Limit(3.0, ANY, "<")
     monkeypatch.setitem(SPEED, "wide", -0.5)
     campaign = campaign_of(tmp_path, dict(periods=[dict(shape=["wide"], period=[3.0, 4.0, 5.0])]))
-    assert np.isnan(wiggle_runs.first_rising_period(campaign.table).value)
+    assert wiggle_runs.first_rising_period(campaign.table) == Limit(5.0, ANY, ">")
+    observed, _ = table_claims(campaign, campaign.sweep("periods"))
+    assert observed.verdict is Verdict.NOT_REPRODUCED and observed.number == "> 5"  # the paper saw 2 to 3
+
+
+def test_errors_are_widened_to_the_scatter_of_repeats_over_all_settings(tmp_path):
+    campaign = campaign_of(tmp_path, dict(periods=[dict(period=PERIODS, seed=[1, 2, 3])]))
+    campaign.as_measured["rise_rate_err"] = NOISE / 3  # less than the runs scatter
+    wide = replace(campaign, pooled=("rise_rate",))
+    wide.__dict__["as_measured"] = campaign.as_measured
+    assert wide.widened["rise_rate"] == pytest.approx(3, rel=0.5)  # chi^2 of 16 degrees of freedom, to 3 sigma
+    assert np.allclose(wide.table["rise_rate_err"], wide.widened["rise_rate"] * NOISE / 3)
+    assert np.allclose(campaign.table["rise_rate_err"], NOISE / 3)
 
 
 def test_the_smallest_amplitude_that_moves_is_where_a_tenth_of_the_fastest_is_reached(tmp_path):
@@ -180,13 +212,38 @@ def test_phases_and_drives_are_judged(tmp_path):
         tmp_path,
         dict(phases=[dict(period=[4.0], seed=[1, 2])], drive=[dict(period=[4.0], drive=["displacement", "velocity"])]),
     )
-    (climbs,) = phase_claims(campaign, campaign.sweep("phases"))
-    assert climbs.measured.value == pytest.approx(
-        2 * 0.3 * 2 / np.pi, rel=0.02
-    )  # means of a sine's half waves, in five parts
-    assert climbs.verdict is Verdict.REPRODUCED
+    turns, climbs, turns_over = phase_claims(campaign, campaign.sweep("phases"))
+    # The made-up motion swings as 0.3 sin(2wt) and is smooth: each cycle of the series is the same.
+    assert climbs.measured.value == pytest.approx(SWING, rel=0.02) and climbs.verdict is Verdict.REPRODUCED
+    assert turns.measured.value == pytest.approx(0, abs=0.02 * SWING)
+    assert turns_over.measured.value == pytest.approx(SWING - abs(law(dict(KEYS))), abs=0.05 * SWING)
     (same,) = drive_claims(campaign, campaign.sweep("drive"))
     assert same.verdict is Verdict.REPRODUCED
+
+
+def test_beside_a_body_is_beside_its_own_slope():
+    x = np.arange(-15, 15, 0.5) + 0.25
+    triangle = np.array([[-4.0, -2.0], [4.0, -2.0], [0.0, 6.0]])  # slope 2; edges at +-2 at its middle height
+    left, right = sides(triangle, x, x)
+    assert np.array_equal(left[:, ::-1], right)
+    rows = np.flatnonzero(right.any(axis=1))
+    assert x[rows].min() > 0 and x[rows].max() < 4
+    for row in rows:
+        edge = (6 - x[row]) / 2
+        assert x[right[row]].min() == pytest.approx(edge + 0.75, abs=0.26)
+        assert right[row].sum() == 6
+
+
+def test_fields_are_judged_on_both_ways(tmp_path):
+    campaign = campaign_of(tmp_path, dict(fields=[dict(shape=["disk", "tall"], period=1.0, fields=1, seed=[1, 2, 3])]))
+    judged = {c.text: c.verdict for c in field_claims(campaign, campaign.sweep("fields"))}
+    # The made-up fields are the same in all phases: a wake on the left, the pressure on the right.
+    place = "pressure on the left less that on the right"
+    assert judged[f"disk: the pressure is in front as it moves right; {place}"] is Verdict.REPRODUCED
+    assert judged[f"disk: the pressure is in front as it moves left; {place}"] is Verdict.NOT_REPRODUCED
+    wake = "disk: a wake behind it at phase 0; area fraction on the left less that on the right"
+    assert judged[wake] is Verdict.REPRODUCED
+    assert len(judged) == 9
 
 
 def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
