@@ -7,12 +7,16 @@ import numpy as np
 from matplotlib.colors import PowerNorm
 from matplotlib.patches import Polygon
 
+from ..drift import drift, phase_rates
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, draw_chains, draw_grains, save
 from ..reader import BASE, GRAIN, INTRUDER, Run
-from ..drift import drift, phase_rates
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
 NAMES = {"disk": "disk", "square": "square", "tall": "tall rectangle", "wide": "wide rectangle", "triangle": "triangle"}
+TURNS = {
+    "displacement": (0.25, 0.75),
+    "velocity": (0.0, 0.5),
+}  # phases t/T at which the body turns, by the drive's form
 
 
 def draw(path, frame=-1):
@@ -64,7 +68,7 @@ def draw_phases(axes, run):
     else:
         axes.text(0.5, 0.5, "no whole cycle to average", transform=axes.transAxes, ha="center", va="center")
     axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
-    for turn in (0.25, 0.75):
+    for turn in TURNS[run.parameters.get("drive", "displacement")]:
         axes.axvline(turn, color=GREY, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)
     axes.set(xlim=(0, 1), xlabel=r"phase $t/T$", ylabel=r"$V_y$  [$\sqrt{gd}$]")
 
