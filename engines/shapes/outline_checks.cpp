@@ -15,6 +15,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
+constexpr std::size_t most_vertices = 5000;  // of twice as many an inset takes a minute
 constexpr Real round_off = 1e-12;  // of the extent: below it, vertices are one point and edges one line [-]
 
 /// A vertex with its index in what the caller gave, so that a message after repairs still points at the right line.
@@ -149,6 +150,9 @@ Points checked_polygon(const Points& vertices)
 		throw std::invalid_argument("outline must enclose an area, but all its vertices lie on one line through " +
 									name(corners.front()) + "; move one off the line");
 	corners = without_collinear(corners, tolerance);
+	if (corners.size() > most_vertices)
+		throw std::invalid_argument("outline must have at most " + std::to_string(most_vertices) + " vertices, got " +
+									std::to_string(corners.size()) + "; leave out what is finer than a bead can show");
 	require_simple(corners);
 	if (twice_area(corners) < 0) std::reverse(corners.begin(), corners.end());
 	Points polygon;

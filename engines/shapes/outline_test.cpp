@@ -48,6 +48,13 @@ TEST(Outline, refuses_fewer_than_three_different_vertices)
 	EXPECT_TRUE(mentions(refusal({ { 1, 2 }, { 3, 4 }, { 3, 4 }, { 1, 2 } }), "got 2, the first being vertex 0 (1, 2)"));
 }
 
+TEST(Outline, refuses_more_vertices_than_an_inset_can_be_made_of)
+{
+	Points many;
+	for (int i = 0; i < 5001; ++i) many.emplace_back(std::cos(2 * pi * i / 5001), std::sin(2 * pi * i / 5001));
+	EXPECT_TRUE(mentions(refusal(many), "at most 5000 vertices, got 5001")) << refusal(many);
+}
+
 TEST(Outline, refuses_a_line) { EXPECT_TRUE(mentions(refusal({ { 0, 0 }, { 1, 1 }, { 3, 3 }, { 2, 2 } }), "enclose an area")); }
 
 TEST(Outline, names_the_edges_that_cross_by_the_callers_indices)
