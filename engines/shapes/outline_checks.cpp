@@ -16,7 +16,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_vertices = 5000;  // of twice as many an inset takes a minute
-constexpr Real round_off = 1e-12;  // of the extent: below it, vertices are one point and edges one line [-]
+constexpr Real round_off = 1e-12;            // of the extent: below it, vertices are one point and edges one line [-]
 
 /// A vertex with its index in what the caller gave, so that a message after repairs still points at the right line.
 struct Corner {
