@@ -76,7 +76,7 @@ class WiggleParameters(intruder.BodyParameters):
     height: float = quantity(195.0, "d", "height of the bed", gt=0)
     depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
-    frames: int = quantity(10, "-", "pictures of the bed that are kept", ge=1, le=9999)
+    frames: int = quantity(10, "-", "pictures of the bed that are kept, up to 40 a period", ge=1, le=9999)
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     orientation_deg: float = quantity(0.0, "degrees", "the shape turned counter-clockwise about its centroid")
@@ -160,7 +160,12 @@ def imposed_motion(p, held):
 
 
 def check_period(p, dt):
-    """A sample of the motion is at least one time step."""
+    """A sample of the motion is at least one time step and at most the run."""
+    if p.period > SAMPLES_PER_PERIOD * p.time:
+        raise UsageError(
+            f"period={p.period:g} sqrt(d/g) must be at most {SAMPLES_PER_PERIOD} times time={p.time:g}, or nothing of it is seen;"
+            " raise time or lower period"
+        )
     if p.amplitude and p.period < SAMPLES_PER_PERIOD * dt:
         raise UsageError(
             f"period={p.period:g} sqrt(d/g) must be at least {SAMPLES_PER_PERIOD} time steps, {SAMPLES_PER_PERIOD * dt:.3g};"

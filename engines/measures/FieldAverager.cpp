@@ -32,8 +32,9 @@ constexpr Real phase_tolerance = 1e-6;  // of a phase: YADE's time is a sum of s
 void FieldAverager::check() const
 {
 	require(body >= -1, "FieldAverager.body must be the id of a body or clump, or -1 for a fixed origin", body);
-	require(origin.allFinite() && low.allFinite() && high.allFinite(), "FieldAverager.origin, low and high must be finite",
-		low.transpose());
+	require(origin.allFinite(), "FieldAverager.origin must be finite", origin.transpose());
+	require(low.allFinite(), "FieldAverager.low must be finite", low.transpose());
+	require(high.allFinite(), "FieldAverager.high must be finite", high.transpose());
 	require(std::isfinite(spacing) && spacing > 0, "FieldAverager.spacing must be positive and finite", spacing);
 	for (int k = 0; k < 2; ++k) {
 		const Real bins = (high[k] - low[k]) / spacing;
@@ -47,6 +48,13 @@ void FieldAverager::check() const
 		"FieldAverager.kernel must be 'diskBin', 'gaussian' or 'sphere'", kernel);
 	require(std::isfinite(width) && width > 0, "FieldAverager.width must be positive and finite", width);
 	require(std::isfinite(cutoff) && cutoff > 0, "FieldAverager.cutoff must be positive and finite [w]", cutoff);
+	if (kernel != "diskBin") {
+		const Real reach = kernel == "gaussian" ? width * cutoff : width;
+		require(reach >= spacing / std::sqrt(2.0),
+			"FieldAverager: a kernel must reach a point of the grid from anywhere; width, times cutoff for the gaussian, must be "
+			"at least 0.71 spacing; take a wider kernel or a smaller spacing; reach",
+			reach);
+	}
 	require(every >= 1, "FieldAverager.every must be at least 1", every);
 	require(phases >= 1 && phases <= 10000, "FieldAverager.phases must lie in 1..10000", phases);
 	require(std::isfinite(period) && period > 0, "FieldAverager.period must be positive and finite", period);

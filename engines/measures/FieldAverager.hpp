@@ -17,11 +17,12 @@ public:
 		using Self = FieldAverager;
 		visit("body", &Self::body, "id of the body or clump whose centre is the window's origin; -1: the fixed point `origin`");
 		visit("origin", &Self::origin, "origin of the window where there is no body [m]; may be moved while it averages");
-		visit("low", &Self::low, "lower left corner of the window from its origin [m]");
-		visit("high", &Self::high, "upper right corner of the window from its origin [m]");
+		visit("low", &Self::low, "lower left corner of the window from its origin, (x, y, 0) [m]");
+		visit("high", &Self::high, "upper right corner of the window from its origin, (x, y, 0) [m]");
 		visit("spacing", &Self::spacing, "edge of the square bins, distance of the points in their middles [m]");
 		visit("kernel", &Self::kernel, "'diskBin', 'gaussian' or 'sphere'");
-		visit("width", &Self::width, "w of the Gaussian, or the sphere's radius [m]; 'diskBin' has none");
+		visit("width", &Self::width,
+			"w of the Gaussian, or the sphere's radius [m], wide enough to reach a grid point from anywhere; 'diskBin' has none");
 		visit("cutoff", &Self::cutoff, "where the Gaussian ends [w]");
 		visit("every", &Self::every, "sample every so many steps");
 		visit("relative", &Self::relative, "velocities relative to the body's velocity (without its spin)");

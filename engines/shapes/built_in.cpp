@@ -53,7 +53,7 @@ const Shape& shape_named(const std::string& name)
 		choices += (choices.empty() ? "" : ", ") + std::string(shape.name) + " (" + shape.alias + ")";
 	}
 	throw std::invalid_argument(
-		"shape must be one of " + choices + ", got '" + name + "'; other shapes are read from a WKT or CSV file");
+		"shape must be one of " + choices + ", got '" + name + "'; other shapes are read from files that end in .wkt or .csv");
 }
 
 void require_sizes(const Shape& shape, const Sizes& sizes)

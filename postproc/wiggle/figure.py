@@ -66,7 +66,14 @@ def draw_phases(axes, run):
     if np.isfinite(rates).any():
         axes.errorbar(phases, rates, np.nan_to_num(errors), fmt="o-", color=BLUE, markersize=2, elinewidth=0.6)
     else:
-        axes.text(0.5, 0.5, "no whole cycle to average", transform=axes.transAxes, ha="center", va="center")
+        axes.text(
+            0.5,
+            0.5,
+            "no whole cycle after the first tenth of the run",
+            transform=axes.transAxes,
+            ha="center",
+            va="center",
+        )
     axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
     for turn in TURNS[run.parameters.get("drive", "displacement")]:
         axes.axvline(turn, color=GREY, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)

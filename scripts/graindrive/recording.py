@@ -1,4 +1,4 @@
-"""Runs a scene in blocks, samples it after each, and keeps checkpoints from which a run goes on as if never interrupted."""
+"""Runs a scene in blocks, samples it after each, and keeps checkpoints: a run goes on as if never interrupted (`scene.load`)."""
 
 import sys
 

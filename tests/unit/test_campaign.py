@@ -1,5 +1,6 @@
 """Plans of campaigns: what a YAML becomes, names that find their runs again, and what is refused before anything runs."""
 
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -161,6 +162,18 @@ def test_a_campaign_at_work_keeps_others_out(plan, tmp_path):
         with pytest.raises(UsageError, match="another scripts/campaign is at work"):
             with execution.opened(tmp_path / "out", found):
                 pass
+
+
+def test_what_a_killed_campaign_left_at_work_keeps_others_out(plan, tmp_path):
+    found = plan(GOOD)
+    with execution.opened(tmp_path / "out", found) as lock:
+        left = subprocess.Popen(["cat"], stdin=subprocess.PIPE, pass_fds=[lock.fileno()])  # waits, as Snakemake would
+    with pytest.raises(UsageError, match="another scripts/campaign is at work"):
+        with execution.opened(tmp_path / "out", found):
+            pass
+    left.communicate()
+    with execution.opened(tmp_path / "out", found):
+        pass
 
 
 def test_marks_follow_the_run_folders(plan, tmp_path):

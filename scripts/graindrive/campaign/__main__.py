@@ -48,21 +48,21 @@ def campaign(options):
         raise UsageError(f"out={folder} is a file; give --out a folder")
     if options.dry_run:
         return tell(folder, plan, options.cores)
-    with signals.handled(), execution.opened(folder, plan):
+    with signals.handled(), execution.opened(folder, plan) as lock:
         if not options.report:
-            make_runs(folder, plan, options)
+            make_runs(folder, plan, options, lock)
         report = write_report(folder)
     print(f"{NAME}: see {report}", file=sys.stderr)
     return tell_failures(folder, plan)
 
 
-def make_runs(folder, plan, options):
+def make_runs(folder, plan, options, lock):
     """Have the missing runs made, if there are any."""
     todo = execution.missing(folder, plan)
     print(f"{NAME}: {len(plan.runs) - len(todo)} of {len(plan.runs)} runs are there already", file=sys.stderr)
     if todo:
         print(f"{NAME}: {cost.in_words(folder, plan, todo, options.cores)}", file=sys.stderr)
-        execution.carry_out(folder, plan, options.cores, options.snakemake)
+        execution.carry_out(folder, plan, options.cores, options.snakemake, lock)
 
 
 def tell(folder, plan, cores):

@@ -17,7 +17,7 @@ SNAKEFILE = Path(__file__).with_name("Snakefile")
 
 @contextlib.contextmanager
 def opened(folder, plan):
-    """Make the campaign's folder, hold its lock, and leave the plan in it as `campaign.json`."""
+    """Make the campaign's folder, hold its lock, which is yielded, and leave the plan in it as `campaign.json`."""
     try:
         for name in ("runs", "logs", "done"):
             (folder / name).mkdir(parents=True, exist_ok=True)
@@ -30,7 +30,7 @@ def opened(folder, plan):
         except BlockingIOError:
             raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
         write_json(folder / "campaign.json", as_plain(plan))
-        yield
+        yield lock
 
 
 def as_plain(plan):
@@ -69,10 +69,11 @@ def set_marks(folder, plan):
         mark.unlink(missing_ok=True) if run.name in names else mark.touch()
 
 
-def carry_out(folder, plan, cores, options):
+def carry_out(folder, plan, cores, options, lock):
     """Have Snakemake make the runs that are missing; return its exit code. A signal ends it and its runs, and is raised.
 
-    Snakemake gets a process group of its own, so that each run hears of Ctrl-C, or of a SIGTERM, exactly once.
+    Snakemake gets a process group of its own, so that each run hears of Ctrl-C, or of a SIGTERM, exactly once. It holds the
+    open file `lock` too: where this process is killed, Snakemake works on and must keep a second call out.
     """
     set_marks(folder, plan)
     command = [
@@ -86,7 +87,12 @@ def carry_out(folder, plan, cores, options):
         *ours(cores, options),
     ]
     child = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, process_group=0, preexec_fn=hear_interrupts, env=environment()
+        command,
+        stdin=subprocess.DEVNULL,
+        process_group=0,
+        preexec_fn=hear_interrupts,
+        env=environment(),
+        pass_fds=[lock.fileno()],
     )
     try:
         return child.wait()
