@@ -7,7 +7,7 @@ import numpy as np
 from .statistics import block_mean
 
 REST = 0.25  # [d] how far the mean of a cycle may stray from the final height of a body at rest
-LONG_REST = 4  # a rest counts if the body would else have gone so many times as far
+LONG_REST = 8  # a rest counts if the body would else have gone so many times as far
 
 
 @dataclass(frozen=True)

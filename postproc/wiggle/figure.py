@@ -66,16 +66,11 @@ def draw_phases(axes, run):
     if np.isfinite(rates).any():
         axes.errorbar(phases, rates, np.nan_to_num(errors), fmt="o-", color=BLUE, markersize=2, elinewidth=0.6)
     else:
-        axes.text(
-            0.5,
-            0.5,
-            "no whole cycle after the first tenth of the run",
-            transform=axes.transAxes,
-            ha="center",
-            va="center",
-        )
+        words = "no whole cycle after the\nfirst tenth of the run"
+        axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center")
+        axes.set_yticks([])
     axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
-    for turn in TURNS[run.parameters.get("drive", "displacement")]:
+    for turn in TURNS[run.parameters.get("drive", "displacement")] if np.isfinite(rates).any() else ():
         axes.axvline(turn, color=GREY, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)
     axes.set(xlim=(0, 1), xlabel=r"phase $t/T$", ylabel=r"$V_y$  [$\sqrt{gd}$]")
 
