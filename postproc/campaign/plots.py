@@ -19,7 +19,7 @@ def canvas(rows, columns, claims, *, width, height):
     figure.set_layout_engine("constrained", rect=(0, room / (height + room), 1, height / (height + room)))
     for line, claim in enumerate(claims):
         y = LINE_INCHES * (len(claims) - line) / (height + room)
-        text, colour = f"{claim.text} (paper: {claim.expected}): {claim.number}", VERDICT_COLOURS[claim.verdict]
+        text, colour = f"{claim.text} (expected: {claim.expected}): {claim.number}", VERDICT_COLOURS[claim.verdict]
         figure.text(0.99, y, claim.verdict.value, fontsize=6, color=colour, weight="bold", ha="right")
         figure.text(0.01, y, text, fontsize=6)
     return figure, axes

@@ -171,19 +171,18 @@ def of_drives(campaign, rows, claims):
 def of_scenes(campaign, rows, claims):
     """V_y of each scene, a panel for each period."""
     groups = list(rows.groupby("period", sort=True))
-    figure, axes = panels(groups, claims, height=0.8 + 0.2 * len(scenes_of(rows)), columns=2)
-    for panel, (period, group) in zip(axes, groups):
-        scenes = scenes_of(group)
-        found = [quantity(scene, RATE) for _, scene in scenes]
-        places = -np.arange(len(scenes))
-        panel.errorbar(
-            [m.value for m in found], places, xerr=[m.error for m in found], fmt="o", markersize=3, color=BLACK
-        )
-        panel.axvspan(
-            found[0].value - found[0].error, found[0].value + found[0].error, color=GREY, alpha=0.4, linewidth=0
-        )
-        panel.set_yticks(places, [name for name, _ in scenes] if panel is axes[0] else [""] * len(scenes))
-        panel.set(title=f"T = {period:g}", xlabel=RATE_LABEL, ylim=(0.6 - len(scenes), 0.6))
+    columns, every = 2, scenes_of(rows)
+    names = [name for name, _ in every]
+    figure, axes = panels(groups, claims, height=0.8 + 0.2 * len(every), columns=columns)
+    for k, (panel, (period, group)) in enumerate(zip(axes, groups)):
+        scenes = dict(scenes_of(group))
+        found = [quantity(scenes[name], RATE) if name in scenes else UNKNOWN for name in names]
+        first, places = found[0], -np.arange(len(names))
+        values, errors = np.array([(m.value, m.error) for m in found]).T
+        panel.errorbar(values, places, xerr=errors, fmt="o", markersize=3, color=BLACK)
+        panel.axvspan(first.value - first.error, first.value + first.error, color=GREY, alpha=0.4, linewidth=0)
+        panel.set_yticks(places, names if k % columns == 0 else [""] * len(names))
+        panel.set(title=f"T = {period:g}", xlabel=RATE_LABEL, ylim=(0.6 - len(names), 0.6))
         panel.locator_params(axis="x", nbins=4)
     return figure
 
