@@ -7,24 +7,25 @@ x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d,
 Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
 velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
 
-Cost: the paper's size is 63,000 disks and 1e7 steps, two hours of one core; the demo is 11,500 disks and 1.2e5 steps, a minute
-or two. A lid presses for the bed that the demo leaves out (0.84 rho g d for each d of it).
+Cost: the paper's size is 63,000 disks and 1e7 steps; the demo is 11,500 disks and 1.2e5 steps, a minute or two. A lid
+presses for the bed that the demo leaves out (0.84 rho g d for each d of it).
 
-What a cheaper scene changes, for the disk at A = 3, time = 100, dt_factor = 5: V_y in sqrt(g d), with the larger of the errors
-that cycles and, from three on, seeds give (studies/campaigns/wiggle_scene.yaml measures it all, with three seeds each):
+What a cheaper scene changes, for the disk at A = 3, time = 100: V_y in sqrt(g d) of two or three seeds, with errors widened to
+their scatter, and the seconds that a run took of one busy core (studies/campaigns/wiggle_scene.yaml; studies/RESULTS.md):
 
-    scene                                   T = 4, rises               T = 1, sinks
-    300 x 195 d, depth 105 d                 0.101 +- 0.013 (1 seed)   -0.11 +- 0.04 (1 seed, time = 60)
-    120 x 90 d, depth 50 d, rigid lid        0.082 +- 0.021 (3 seeds)  -0.02 +- 0.03 (2 seeds)
-    120 x 90 d, depth 50 d, lid of grains    0.066 +- 0.010 (2 seeds)  -0.09 +- 0.04 (1 seed)
-    120 x 90 d, depth 50 d, no lid           0.090 +- 0.017 (1 seed)   -0.04 +- 0.03 (1 seed)
-    80 x 60 d, depth 30 d, rigid lid         0.067 +- 0.009 (3 seeds)   0.00 +- 0.03 (1 seed)
-    the second with dt_factor = 2.5          0.079 +- 0.008 (2 seeds)
+    scene                                    T = 1          T = 2          T = 4          cost
+    300 x 195 d, depth 105 d, dt x 5         -0.03 +- 0.03   0.06 +- 0.02   0.06 +- 0.01   420 to 550 s
+    120 x 90 d, depth 50 d, rigid lid        -0.03 +- 0.04   0.03 +- 0.01   0.09 +- 0.02   65 to 110 s
+    the same, dt x 2.5                                       0.06 +- 0.01                  90 s
+    the same, dt x 1                         -0.04 +- 0.05   0.06 +- 0.03                  200 to 245 s
+    120 x 90 d, depth 50 d, lid of grains    -0.17 +- 0.07   0.05 +- 0.02   0.08 +- 0.01   60 to 120 s
+    120 x 90 d, depth 50 d, no lid           -0.08 +- 0.03  -0.06 +- 0.02   0.11 +- 0.02   50 to 140 s
+    80 x 60 d, depth 30 d, rigid lid          0.00 +- 0.04   0.05 +- 0.02   0.06 +- 0.01   30 to 60 s
 
-At T = 4 the 120 d scenes differ from the full one by about two errors or less, the time step by nothing that shows; the
-smallest rises a third too slowly. At T = 1 a rigid lid seems to hinder sinking, by some two errors. Heavy grains do not, but
-they break into the cavity of a body at 30 d: after 75 sqrt(d/g) they buried it. Seeds scatter by 0.03, more than one run's
-cycles tell: average over three or more.
+Depth is pressure: without the weight of what lies above the disk sinks at T = 2 where it should rise, four errors off. Under
+a rigid lid no scene differs from the full one by two errors, nor does the time step. Heavy grains break into the cavity of a
+body at 30 d and bury it. Seeds scatter by 1.5 times what one run's cycles tell: average over three or more. In the paper
+V_y is an average on the way to the surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
