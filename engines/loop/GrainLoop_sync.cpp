@@ -40,14 +40,17 @@ void GrainLoop::release_what_moves()
 void GrainLoop::sync()
 {
 	if (!stepper_ || !scene || read_from_ != scene) return;
-	const auto nearest = [](Real d, Real period) { return period > 0 ? d - period * std::nearbyint(d / period) : d; };
+	// YADE counts the windings of a periodic box. No sum over syncs: results must not depend on how often somebody looks.
+	const auto unwound = [](Real now, Real before, Real period) {
+		return period > 0 ? now + period * std::nearbyint((before - now) / period) : now;
+	};
 	for (std::size_t g = 0; g < map_.grain_id.size(); ++g) {
 		if (!scene->bodies->exists(map_.grain_id[g])) continue;
 		const loop::Grain now = stepper_->grain(g);
 		yade::State& state = *(*scene->bodies)[map_.grain_id[g]]->state;
 		if (now.body != loop::free_grain && (map_.body_id[now.body] < 0 || map_.body_id[now.body] == map_.grain_id[g])) continue;
-		state.pos[0] += nearest(now.x - state.pos[0], periods[0]);  // YADE counts the windings of a periodic box
-		state.pos[1] += nearest(now.y - state.pos[1], periods[1]);
+		state.pos[0] = unwound(now.x, state.pos[0], periods[0]);
+		state.pos[1] = unwound(now.y, state.pos[1], periods[1]);
 		state.vel[0] = now.vx, state.vel[1] = now.vy;
 		state.angVel[2] = now.spin;
 		state.angMom[2] = now.spin * state.inertia[2];

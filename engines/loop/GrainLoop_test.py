@@ -154,6 +154,29 @@ def test_a_checkpoint_continues_to_the_last_bit(tmp_path):
     assert np.array_equal(disks.everything()[:, 0:6], expected[:, 0:6])
 
 
+def drifting_crowd():
+    """40 disks that collide and drift through the periodic sides, by turns to the left and to the right."""
+    disks.new_scene(dt=1e-3, period=(10, 20, 10))
+    rng = np.random.default_rng(3)
+    for k in range(40):
+        disks.disk(1.2 * (k % 8) + 0.6, 1.2 * (k // 8) + 0.6, velocity=(3 * (-1) ** k, rng.uniform(-1, 1)), spin=1)
+    disks.loop(disks.hertz(gamma_n=50, gamma_t=50), friction=0.4)
+
+
+def test_looking_often_changes_no_bit_of_what_is_seen():
+    def last_seen(*, blocks):
+        drifting_crowd()
+        loop = grain_loop.use_grain_loop()
+        for _ in range(blocks):
+            disks.run(6000 // blocks)
+            loop.sync()
+        return disks.everything()
+
+    seldom, often = last_seen(blocks=10), last_seen(blocks=200)
+    assert np.array_equal(often[:, 0:6], seldom[:, 0:6])
+    assert (seldom[:, 0] < 0).any() and (seldom[:, 0] > 10).any()  # some have left the box on either side
+
+
 def test_bad_settings_are_refused():
     with pytest.raises(ValueError, match="precision must be 'double' or 'single', got half"):
         engines.GrainLoop(precision="half")
