@@ -116,7 +116,7 @@ FIGURES = (
         "drive",
         "Two readings of the drive",
         "The text gives the velocity as A sin(2πt/T) and uses A as the amplitude of the displacement.",
-        claims.drive_claims,
+        period_claims.drive_claims,
         plots.of_drives,
     ),
 )

@@ -71,27 +71,15 @@ def mean_size(measured):
     return Measured(abs(measured.value), measured.error)
 
 
-def drive_claims(_campaign, rows):
-    """The two readings of the drive: where A is the amplitude of velocity, displacements are A T/2π."""
-    claims = []
-    for period, group in rows.groupby("period"):
-        by_form = {form: quantity(of_form, RATE) for form, of_form in group.groupby("drive")}
-        if {"displacement", "velocity"} <= set(by_form):
-            change = by_form["displacement"] - by_form["velocity"]
-            text = f"T {period:g}: the reading of the drive does not matter; V_y by displacement less V_y by velocity"
-            claims.append(claim(group, text, "Fig. 1 against section 3.3", "0", change, Agrees(0, 0.01, 0.02)))
-    return claims
-
-
 def scene_claims(_campaign, rows):
     """Each scene beside the one with most grains: how much V_y changes with the bed, the lid and the time step."""
     claims = []
-    for period, group in rows.groupby("period"):
+    for (amplitude, period), group in rows.groupby(["amplitude", "period"]):
         scenes = scenes_of(group)
         _, full = scenes[0]
         for name, scene in scenes[1:]:
             change = quantity(scene, RATE) - quantity(full, RATE)
-            text = f"T {period:g}, {name}: V_y less that of the first scene"
+            text = f"A {amplitude:g}, T {period:g}, {name}: V_y less that of the first scene"
             claims.append(claim(scene, text, "this study", "0", change, Agrees(0, 0.02, 0.04)))
     return claims
 

@@ -31,15 +31,20 @@ def panels(groups, claims, *, height=1.9, columns=3):
     return figure, axes.ravel()[: len(groups)]
 
 
-def lines_by_shape(rows, claims, key, label, points_of, xlabel, *, height=1.9):
+def lines_by_shape(rows, claims, key, label, points_of, xlabel):
     """Return (figure, axes, groups): a panel for each shape, in it `points_of(its rows)` for each value of `key`."""
-    groups = list(by_shape(rows))
+    groups = [(title(shape), group) for shape, group in by_shape(rows)]
+    return *lines_in(groups, claims, key, label, points_of, xlabel), groups
+
+
+def lines_in(groups, claims, key, label, points_of, xlabel, *, height=1.9):
+    """Return (figure, axes): a panel for each of `groups`, (title, rows), in it `points_of(its rows)` for each `key`."""
     figure, axes = panels(groups, claims, height=height)
-    for panel, (shape, group) in zip(axes, groups):
+    for panel, (name, group) in zip(axes, groups):
         for k, (value, of_one) in enumerate(group.groupby(key, sort=True)):
             draw_points(panel, *points_of(of_one), **look(k, label.format(value)))
-        name_panel(panel, shape, xlabel)
-    return figure, axes, groups
+        name_panel(panel, name, xlabel)
+    return figure, axes
 
 
 def against_period(campaign, rows, claims):
@@ -82,10 +87,10 @@ def first_periods(campaign, rows, claims):
     return figure
 
 
-def name_panel(panel, shape, xlabel):
+def name_panel(panel, name, xlabel):
     """Set title, labels and a line at zero."""
     panel.axhline(0, color=GREY, linewidth=0.5, zorder=0)
-    panel.set(title=title(shape), xlabel=xlabel, ylabel=RATE_LABEL)
+    panel.set(title=name, xlabel=xlabel, ylabel=RATE_LABEL)
 
 
 def colour_map(campaign, rows, claims):
@@ -114,7 +119,7 @@ def against_amplitude(campaign, rows, claims):
     def points_of(of_one):
         return curve(of_one, "amplitude", RATE)
 
-    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "$A$  [$d$]", height=2.4)
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "$A$  [$d$]")
     for panel in axes:
         panel.axvline(smallest_amplitude(), color=GREY, linewidth=0.5, linestyle=":")
     axes[0].legend()
@@ -155,26 +160,31 @@ def heights(campaign, rows, claims):
         for k, (period, of_one) in enumerate(group.groupby("period", sort=True)):
             series = campaign.run(of_one["run"].iloc[0]).series
             panel.plot(series["t"], series["y"] - series["y"][0], color=COLOURS[k % 6], label=f"T = {period:g}")
-        name_panel(panel, shape, r"$t$  [$\sqrt{d/g}$]")
+        name_panel(panel, title(shape), r"$t$  [$\sqrt{d/g}$]")
         panel.set_ylabel("$y - y_0$  [$d$]")
     axes[0].legend()
     return figure
 
 
 def of_drives(campaign, rows, claims):
-    """V_y against T for both readings of the drive, a panel for each shape."""
-    figure, axes, _ = lines_by_shape(rows, claims, "drive", "A is of the {}", runs.rates, PERIOD_LABEL, height=2.4)
+    """V_y against T for both readings of the drive, a panel for each shape and amplitude."""
+    groups = [
+        (f"{title(shape)}, A = {amplitude:g}", group)
+        for shape, of_one in by_shape(rows)
+        for amplitude, group in of_one.groupby("amplitude")
+    ]
+    figure, axes = lines_in(groups, claims, "drive", "A is of the {}", runs.rates, PERIOD_LABEL, height=2.4)
     axes[0].legend()
     return figure
 
 
 def of_scenes(campaign, rows, claims):
-    """V_y of each scene, a panel for each period."""
-    groups = list(rows.groupby("period", sort=True))
+    """V_y of each scene, a panel for each amplitude and period."""
+    groups = list(rows.groupby(["amplitude", "period"], sort=True))
     columns, every = 2, scenes_of(rows)
     names = [name for name, _ in every]
     figure, axes = panels(groups, claims, height=0.8 + 0.2 * len(every), columns=columns)
-    for k, (panel, (period, group)) in enumerate(zip(axes, groups)):
+    for k, (panel, ((amplitude, period), group)) in enumerate(zip(axes, groups)):
         scenes = dict(scenes_of(group))
         found = [quantity(scenes[name], RATE) if name in scenes else UNKNOWN for name in names]
         first, places = found[0], -np.arange(len(names))
@@ -182,7 +192,7 @@ def of_scenes(campaign, rows, claims):
         panel.errorbar(values, places, xerr=errors, fmt="o", markersize=3, color=BLACK)
         panel.axvspan(first.value - first.error, first.value + first.error, color=GREY, alpha=0.4, linewidth=0)
         panel.set_yticks(places, names if k % columns == 0 else [""] * len(names))
-        panel.set(title=f"T = {period:g}", xlabel=RATE_LABEL, ylim=(0.6 - len(names), 0.6))
+        panel.set(title=f"A = {amplitude:g}, T = {period:g}", xlabel=RATE_LABEL, ylim=(0.6 - len(names), 0.6))
         panel.locator_params(axis="x", nbins=4)
     return figure
 

@@ -16,9 +16,10 @@ from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Limit, Measured
 from graindrive.postproc.wiggle import campaign as wiggle_campaign
 from graindrive.postproc.wiggle import runs as wiggle_runs
-from graindrive.postproc.wiggle.claims import drive_claims, field_claims, phase_claims, scene_claims, sides
+from graindrive.postproc.wiggle.claims import field_claims, phase_claims, scene_claims, sides
 from graindrive.postproc.wiggle.period_claims import (
     amplitude_claims,
+    drive_claims,
     order_and_triangle_claims,
     period_claims,
     table_claims,
@@ -201,7 +202,7 @@ def test_scenes_are_compared_with_the_one_of_most_grains(tmp_path):
     campaign = campaign_of(tmp_path, dict(scene=[dict(scene, period=[1.0, 4.0], seed=[1, 2, 3]) for scene in SCENES]))
     claims = scene_claims(campaign, campaign.sweep("scene"))
     assert [c.text.split(":")[0] for c in claims] == [
-        f"T {t}, 120 × 90 d, depth 50 d + lid (rigid) 46.2, dt × 5" for t in (1, 4)
+        f"A 5, T {t}, 120 × 90 d, depth 50 d + lid (rigid) 46.2, dt × 5" for t in (1, 4)
     ]
     assert {c.verdict for c in claims} == {Verdict.REPRODUCED}
     assert all(abs(c.measured.value) < 4 * c.measured.error for c in claims)
@@ -217,8 +218,10 @@ def test_phases_and_drives_are_judged(tmp_path):
     assert climbs.measured.value == pytest.approx(SWING, rel=0.02) and climbs.verdict is Verdict.REPRODUCED
     assert turns.measured.value == pytest.approx(0, abs=0.02 * SWING)
     assert turns_over.measured.value == pytest.approx(SWING - abs(law(dict(KEYS))), abs=0.05 * SWING)
-    (same,) = drive_claims(campaign, campaign.sweep("drive"))
+    same, *first = drive_claims(campaign, campaign.sweep("drive"))
     assert same.verdict is Verdict.REPRODUCED
+    assert [c.text.split(":")[0] for c in first] == ["disk, A of the displacement", "disk, A of the velocity"]
+    assert [c.number for c in first] == ["< 4", "< 4"]  # it rises at the only period
 
 
 def test_beside_a_body_is_beside_its_own_slope():
