@@ -13,6 +13,7 @@ SWEEPS = {
     "friction": "a few shapes and periods, several mu",
     "drive": "both values of drive, a few periods",
     "fields": "fields=1, one period, disk, tall and triangle",
+    "mass": "a few shapes and periods, several intruder_mass",
     "scene": "scenes by width, height, depth, lid, lid_pressure and dt_factor, the largest of them the paper's",
 }
 POOLED = ("rise_rate",)
@@ -110,6 +111,14 @@ FIGURES = (
         " the pressure in front.",
         claims.field_claims,
         plots.around_body,
+    ),
+    PlannedFigure(
+        "mass",
+        "mass",
+        "The mass of the body",
+        "The paper gives all shapes one mass and does not say which; read as that of a disk of 7 d and the grains' density.",
+        claims.mass_claims,
+        plots.against_mass,
     ),
     PlannedFigure(
         "drive",

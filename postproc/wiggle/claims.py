@@ -71,6 +71,16 @@ def mean_size(measured):
     return Measured(abs(measured.value), measured.error)
 
 
+def mass_claims(_campaign, rows):
+    """Whether V_y depends on the body's mass, which the paper does not give: V_y of the heaviest less that of the lightest."""
+    claims = []
+    for where, group in by_shape_and_period(rows):
+        masses, points = curve(group, "intruder_mass", RATE)
+        text = f"{where}: the mass does not matter; V_y at a mass of {masses[-1]:.3g} less that at {masses[0]:.3g}"
+        claims.append(claim(group, text, "section 2", "0", points[-1] - points[0], Agrees(0, 0.01, 0.02)))
+    return claims
+
+
 def scene_claims(_campaign, rows):
     """Each scene beside the one with most grains: how much V_y changes with the bed, the lid and the time step."""
     claims = []

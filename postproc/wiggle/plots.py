@@ -50,7 +50,6 @@ def lines_in(groups, claims, key, label, points_of, xlabel, *, height=1.9):
 def against_period(campaign, rows, claims):
     """Fig. 5: V_y against T, a panel for each shape, a line for each amplitude, with the cavity model."""
     figure, axes, groups = lines_by_shape(rows, claims, "amplitude", "A = {:g} d", runs.rates, PERIOD_LABEL)
-    share_y(axes)
     for panel, (shape, group) in zip(axes, groups):  # last, in the range of the data, which it leaves
         draw_model(panel, runs.model_of(group), group["period"].max())
     axes[0].legend(handlelength=1.2)
@@ -104,7 +103,7 @@ def colour_map(campaign, rows, claims):
         )
         norm = TwoSlopeNorm(0, -largest, largest)
         places = np.arange(table.shape[1]), np.arange(table.shape[0])
-        image = panel.pcolormesh(*places, table.to_numpy(), cmap="RdBu_r", norm=norm, shading="nearest")
+        image = panel.imshow(table.to_numpy(), cmap="RdBu_r", norm=norm, origin="lower", aspect="auto")
         panel.set_facecolor(GREY)  # not measured
         panel.set_xticks(places[0], [f"{t:g}" for t in table.columns])
         panel.set_yticks(places[1], [f"{a:g}" for a in table.index])
@@ -122,6 +121,18 @@ def against_amplitude(campaign, rows, claims):
     figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "$A$  [$d$]")
     for panel in axes:
         panel.axvline(smallest_amplitude(), color=GREY, linewidth=0.5, linestyle=":")
+    axes[0].legend()
+    return figure
+
+
+def against_mass(campaign, rows, claims):
+    """V_y against the body's mass, a panel for each shape, a line for each period."""
+
+    def points_of(of_one):
+        return curve(of_one, "intruder_mass", RATE)
+
+    xlabel = r"mass of the body  [$\rho d^2$]"
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, xlabel)
     axes[0].legend()
     return figure
 

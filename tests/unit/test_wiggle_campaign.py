@@ -16,7 +16,7 @@ from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Limit, Measured
 from graindrive.postproc.wiggle import campaign as wiggle_campaign
 from graindrive.postproc.wiggle import runs as wiggle_runs
-from graindrive.postproc.wiggle.claims import field_claims, phase_claims, scene_claims, sides
+from graindrive.postproc.wiggle.claims import field_claims, mass_claims, phase_claims, scene_claims, sides
 from graindrive.postproc.wiggle.period_claims import (
     amplitude_claims,
     drive_claims,
@@ -31,7 +31,7 @@ FALL = dict(disk=(3.5, 7.0), square=(6.5, 6.5), tall=(9.5, 9.5), wide=(4.5, 4.5)
 PERIODS = [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]
 KEYS = dict(
     shape="disk", amplitude=5.0, period=4.0, drive="displacement", mu=0.1, width=120.0, height=90.0, depth=50.0,
-    lid="rigid", lid_pressure=46.2, dt_factor=5.0, time=100.0, fields=0, seed=1,
+    intruder_mass=38.0, lid="rigid", lid_pressure=46.2, dt_factor=5.0, time=100.0, fields=0, seed=1,
 )  # fmt: skip
 SCENES = [dict(width=300.0, lid_pressure=0.0, n_grains=63000), dict(width=120.0, lid_pressure=46.2, n_grains=11500)]
 PHASE = (np.arange(20) + 0.5) / 20
@@ -224,6 +224,12 @@ def test_phases_and_drives_are_judged(tmp_path):
     assert [c.number for c in first] == ["< 4", "< 4"]  # it rises at the only period
 
 
+def test_a_mass_that_does_not_matter_is_found_not_to(tmp_path):
+    campaign = campaign_of(tmp_path, dict(mass=[dict(intruder_mass=[38.0, 77.0, 154.0], seed=[1, 2, 3])]))
+    (same,) = mass_claims(campaign, campaign.sweep("mass"))
+    assert same.verdict is Verdict.REPRODUCED and "V_y at a mass of 154 less that at 38" in same.text
+
+
 def test_beside_a_body_is_beside_its_own_slope():
     x = np.arange(-15, 15, 0.5) + 0.25
     triangle = np.array([[-4.0, -2.0], [4.0, -2.0], [0.0, 6.0]])  # slope 2; edges at +-2 at its middle height
@@ -259,6 +265,7 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
             phases=[dict(shape=["disk", "triangle"], period=[1.0, 4.0])],
             amplitudes=[dict(shape=["disk", "tall"], amplitude=[0.5, 1.0, 3.0, 5.0], period=5.0)],
             friction=[dict(shape=["disk", "tall"], period=[4.0, 5.0], mu=[0.0, 0.1, 0.3, 0.5])],
+            mass=[dict(shape=["disk", "square"], intruder_mass=[38.0, 77.0])],
             drive=[dict(period=PERIODS, drive=["displacement", "velocity"])],
             fields=[dict(shape=["disk", "triangle"], period=[1.0], fields=1, seed=[1, 2, 3])],
             scene=[dict(scene, period=[1.0, 4.0]) for scene in SCENES],
