@@ -3,6 +3,7 @@
 from functools import partial
 
 import numpy as np
+from scipy.special import ndtr
 
 from ..campaign.claims import claim_on
 from ..campaign.runs import curve, over_repeats, quantity
@@ -40,7 +41,8 @@ def phase_claims(campaign, rows):
     """V_y swings twice a cycle: what the two halves of that swing are, and whether it turns V_y over."""
     claims = []
     for where, group in by_shape_and_period(rows):
-        parts = len(runs.phase_curve(campaign, group)[0])
+        phases, points = runs.phase_curve(campaign, group)
+        parts = len(phases)
         turning, moving_out = (runs.phase_sum(campaign, group, weights) for weights in swings(parts))
         text = f"{where}: V_y is largest where it turns; cos(2ωt) part of V_y, from turns to centre"
         claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", turning, above(0)))
@@ -50,7 +52,17 @@ def phase_claims(campaign, rows):
             both = swing_size(turning, moving_out) - mean_size(quantity(group, RATE))
             text = f"{where}: it rises and sinks within each cycle; amplitude of the swing less |V_y|"
             claims.append(claim(group, text, "section 3.3", "> 0", both, above(0)))
+        if group["shape"].iloc[0] == "triangle":
+            text = f"{where}: V_y is negative at most phases; share of them"
+            claims.append(claim(group, text, "Fig. 8(e), section 3.3", "> 0.5", share_below_zero(points), above(0.5)))
     return claims
+
+
+def share_below_zero(points):
+    """Return which share of `Measured` numbers is negative, each counted by how likely it is, as `Measured`."""
+    values, errors = np.array([(m.value, m.error) for m in points]).T
+    likely = ndtr(-values / errors)
+    return Measured(float(likely.mean()), float(np.sqrt(np.sum(likely * (1 - likely))) / len(points)))
 
 
 def swings(parts):
@@ -129,7 +141,7 @@ def field_claims(campaign, rows):
             text = f"{shape}: the pressure is in front as it moves {way}; pressure on the left less that on the right"
             claims.append(claim(group, text, source, sign, over_repeats(pressure), rule))
         wakes[shape] = beside(campaign, group, "area_fraction", TURNED)
-        text = f"{shape}: the wake is larger where it turns than at phase 0; area fraction, left less right, turned less centre"
+        text = f"{shape}: its wake is larger where it turned than at the centre; area fraction, left less right, difference"
         claims.append(claim(group, text, source, "< 0", over_repeats(wakes[shape] - behind), below(0)))
     if {"disk", "tall"} <= wakes.keys():
         larger = over_repeats(wakes["tall"]) - over_repeats(wakes["disk"])

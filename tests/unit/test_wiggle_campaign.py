@@ -16,7 +16,14 @@ from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Limit, Measured
 from graindrive.postproc.wiggle import campaign as wiggle_campaign
 from graindrive.postproc.wiggle import runs as wiggle_runs
-from graindrive.postproc.wiggle.claims import field_claims, mass_claims, phase_claims, scene_claims, sides
+from graindrive.postproc.wiggle.claims import (
+    field_claims,
+    mass_claims,
+    phase_claims,
+    scene_claims,
+    share_below_zero,
+    sides,
+)
 from graindrive.postproc.wiggle.period_claims import (
     amplitude_claims,
     drive_claims,
@@ -228,6 +235,13 @@ def test_a_mass_that_does_not_matter_is_found_not_to(tmp_path):
     campaign = campaign_of(tmp_path, dict(mass=[dict(intruder_mass=[38.0, 77.0, 154.0], seed=[1, 2, 3])]))
     (same,) = mass_claims(campaign, campaign.sweep("mass"))
     assert same.verdict is Verdict.REPRODUCED and "V_y at a mass of 154 less that at 38" in same.text
+
+
+def test_the_share_of_negative_numbers_knows_its_error():
+    certain = share_below_zero([Measured(v, 1e-6) for v in (-1.0, -2.0, -0.5, 1.0)])
+    assert certain.value == 0.75 and certain.error < 1e-9
+    undecided = share_below_zero([Measured(0.0, 1.0)] * 16)
+    assert undecided.value == pytest.approx(0.5) and undecided.error == pytest.approx(0.5 / 4)
 
 
 def test_beside_a_body_is_beside_its_own_slope():
