@@ -40,9 +40,10 @@ def lines_by_shape(rows, claims, key, label, points_of, xlabel):
 def lines_in(groups, claims, key, label, points_of, xlabel, *, height=1.9):
     """Return (figure, axes): a panel for each of `groups`, (title, rows), in it `points_of(its rows)` for each `key`."""
     figure, axes = panels(groups, claims, height=height)
+    values = sorted(set().union(*(group[key] for _, group in groups)))  # one look for a value in all panels
     for panel, (name, group) in zip(axes, groups):
-        for k, (value, of_one) in enumerate(group.groupby(key, sort=True)):
-            draw_points(panel, *points_of(of_one), **look(k, label.format(value)))
+        for value, of_one in group.groupby(key, sort=True):
+            draw_points(panel, *points_of(of_one), **look(values.index(value), label.format(value)))
         name_panel(panel, name, xlabel)
     return figure, axes
 
@@ -52,7 +53,7 @@ def against_period(campaign, rows, claims):
     figure, axes, groups = lines_by_shape(rows, claims, "amplitude", "A = {:g} d", runs.rates, PERIOD_LABEL)
     for panel, (shape, group) in zip(axes, groups):  # last, in the range of the data, which it leaves
         draw_model(panel, runs.model_of(group), group["period"].max())
-    axes[0].legend(handlelength=1.2)
+    axes[-1].legend(handlelength=1.2, loc="lower right")
     return figure
 
 
