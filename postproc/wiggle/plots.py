@@ -53,7 +53,10 @@ def against_period(campaign, rows, claims):
     figure, axes, groups = lines_by_shape(rows, claims, "amplitude", "A = {:g} d", runs.rates, PERIOD_LABEL)
     for panel, (shape, group) in zip(axes, groups):  # last, in the range of the data, which it leaves
         draw_model(panel, runs.model_of(group), group["period"].max())
-    axes[-1].legend(handlelength=1.2, loc="lower right")
+    place = next((spare for spare in figure.axes if not spare.axison), axes[0])
+    place.legend(
+        *axes[0].get_legend_handles_labels(), handlelength=1.2, loc="center" if place is not axes[0] else "best"
+    )
     return figure
 
 
