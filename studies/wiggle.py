@@ -7,9 +7,9 @@ x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d,
 Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
 velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
 
-Cost: the paper's size is 63,000 disks and 1e7 steps, for a disk with A = 3 some 70 minutes of two cores at T = 4 and 100 at T = 1 by
-the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 disks and 1.2e5 steps, a minute or two. A lid presses
-for the bed that the demo leaves out (0.84 rho g d for each d of it).
+Cost: the paper's size is 63,000 disks and 1e7 steps, for a disk with A = 3 some 70 minutes of two cores at T = 4 and 100 at
+T = 1 by the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 disks and 1.2e5 steps, a minute or two. A lid
+presses for the bed that the demo leaves out (0.84 rho g d for each d of it).
 
 What a cheaper scene changes, for the disk at A = 3, time = 100: V_y in sqrt(g d) of two or three seeds, with errors widened to
 their scatter, and the seconds that a run took of one busy core (studies/campaigns/wiggle_scene.yaml; studies/RESULTS.md):
