@@ -20,6 +20,10 @@ class Measured:
         digits = max(0, 1 - int(np.floor(np.log10(self.error))))
         return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
 
+    def __abs__(self):
+        """The number without its sign."""
+        return Measured(abs(self.value), self.error)
+
     def __sub__(self, other):
         other = exactly(other)
         return Measured(self.value - other.value, float(np.hypot(self.error, other.error)))

@@ -27,9 +27,9 @@ Depth is pressure: without the weight of what lies above the disk sinks at T = 2
 no scene under a rigid lid differs from the full one by two errors, nor does the time step. At A = 5 the cheaper scene seems
 too small: at T = 2 the disk sinks in the full one and rises under the lid, a difference of 0.10 +- 0.04; at T = 3 it rises in
 both. So the first rising period of the disk lies between 2 and 3 in the full scene, as in Table 1 (2.5 to 3), and below 2 in
-the cheaper one. Heavy grains break into the cavity of a body at 30 d and bury it. Seeds scatter by 1.5 times what one run's
-cycles tell: average over three or more. In the paper V_y is an average on the way to the surface, 105 d; in 100 sqrt(d/g)
-a body rises by some 10 d, so ours is that of depth.
+the cheaper one. Heavy grains break into the cavity of a body at 30 d and bury it (lid=grains in the last scene). Seeds scatter
+by 1.5 times what one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the
+surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run

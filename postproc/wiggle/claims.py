@@ -1,4 +1,4 @@
-"""The claims of Tripura et al. on friction, phase and fields, and our own on drives and scenes, tested on a campaign's runs."""
+"""The claims of Tripura et al. on friction, phase and fields, and our own on masses and scenes, tested on a campaign's runs."""
 
 from functools import partial
 
@@ -10,7 +10,7 @@ from ..campaign.runs import curve, over_repeats, quantity
 from ..campaign.verdicts import Agrees, above, below
 from ..measured import UNKNOWN, Measured, polynomial_through
 from . import runs
-from .runs import RATE, by_shape
+from .runs import RATE, by_shape, of_shapes
 
 PRESSURE = "contact_pressure"  # Eqs. 3.3 and 3.4 hold contacts alone
 
@@ -41,18 +41,17 @@ def phase_claims(campaign, rows):
     """V_y swings twice a cycle: what the two halves of that swing are, and whether it turns V_y over."""
     claims = []
     for where, group in by_shape_and_period(rows):
-        phases, points = runs.phase_curve(campaign, group)
-        parts = len(phases)
-        turning, moving_out = (runs.phase_sum(campaign, group, weights) for weights in swings(parts))
+        shape, (_, points) = group["shape"].iloc[0], runs.phase_curve(campaign, group)
+        turning, moving_out = (runs.phase_sum(campaign, group, weights) for weights in swings(len(points)))
         text = f"{where}: V_y is largest where it turns; cos(2ωt) part of V_y, from turns to centre"
         claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", turning, above(0)))
         text = f"{where}: it climbs while it moves out; sin(2ωt) part of V_y"
         claims.append(claim(group, text, "Fig. 8, section 3.3", "> 0", moving_out, above(0)))
-        if group["shape"].iloc[0] == "disk":
-            both = swing_size(turning, moving_out) - mean_size(quantity(group, RATE))
+        if shape == "disk":
+            both = swing_size(turning, moving_out) - abs(quantity(group, RATE))
             text = f"{where}: it rises and sinks within each cycle; amplitude of the swing less |V_y|"
             claims.append(claim(group, text, "section 3.3", "> 0", both, above(0)))
-        if group["shape"].iloc[0] == "triangle":
+        if shape == "triangle":
             text = f"{where}: V_y is negative at most phases; share of them"
             claims.append(claim(group, text, "Fig. 8(e), section 3.3", "> 0.5", share_below_zero(points), above(0.5)))
     return claims
@@ -76,11 +75,6 @@ def swing_size(a, b):
     """Return the amplitude of a wave from those of its two parts, as `Measured`, error to first order."""
     size = float(np.hypot(a.value, b.value))
     return Measured(size, float(np.hypot(a.value * a.error, b.value * b.error) / size)) if size else UNKNOWN
-
-
-def mean_size(measured):
-    """Return a number without its sign."""
-    return Measured(abs(measured.value), measured.error)
 
 
 def mass_claims(_campaign, rows):
@@ -150,7 +144,7 @@ def field_claims(campaign, rows):
         text = (
             "the wake of the tall rectangle is larger than the disk's; area fraction, left less right, where they turn"
         )
-        claims.append(claim(rows[rows["shape"].isin(["disk", "tall"])], text, "section 3.4", "< 0", larger, below(0)))
+        claims.append(claim(of_shapes(rows, "disk", "tall"), text, "section 3.4", "< 0", larger, below(0)))
     return claims
 
 

@@ -1,4 +1,4 @@
-"""The claims of Tripura et al. on shape, period and amplitude, tested on the runs of a campaign: Figs. 5, 14 and Table 1.
+"""The claims of Tripura et al. on shape, period, amplitude and drive, tested on a campaign's runs: Figs. 5, 14 and Table 1.
 
 Where the paper says "negligible" or "mostly" a tolerance is our reading of it; it stands in the claim's rule.
 """
@@ -11,7 +11,7 @@ from ..measured import UNKNOWN
 from . import runs
 from .cavity_model import smallest_amplitude
 from .claims import claim
-from .runs import RATE, by_shape, of_shape
+from .runs import RATE, by_shape, of_shapes
 
 RISE_ORDER = ("disk", "tall", "square", "wide", "triangle")  # section 3.2
 SINK_ORDER = ("triangle", "wide", "square", "tall")  # section 3.2, fastest first
@@ -135,11 +135,11 @@ def order_claims(where, rows):
     sinking = rows[rows["period"] == 1]
     claims = []
     for faster, slower in pairs_in(rising, RISE_ORDER):
-        more = runs.mean_rise(of_shape(rising, faster)) - runs.mean_rise(of_shape(rising, slower))
+        more = runs.mean_rise(of_shapes(rising, faster)) - runs.mean_rise(of_shapes(rising, slower))
         text = f"{where}: {faster} rises faster than {slower}; difference of mean V_y at T > {runs.TURN:g}"
         claims.append(claim(of_shapes(rising, faster, slower), text, "section 3.2", "> 0", more, above(0)))
     for faster, slower in pairs_in(sinking, SINK_ORDER):
-        more = runs.rate_at(of_shape(sinking, slower), 1) - runs.rate_at(of_shape(sinking, faster), 1)
+        more = runs.rate_at(of_shapes(sinking, slower), 1) - runs.rate_at(of_shapes(sinking, faster), 1)
         text = f"{where}: {faster} sinks faster than {slower}; difference of V_y at T = 1"
         claims.append(claim(of_shapes(sinking, faster, slower), text, "section 3.2", "> 0", more, above(0)))
     return claims
@@ -151,14 +151,9 @@ def pairs_in(rows, order):
     return [pair for pair in zip(order, order[1:]) if there.issuperset(pair)]
 
 
-def of_shapes(rows, *shapes):
-    """Return the rows of several shapes."""
-    return rows[rows["shape"].isin(shapes)]
-
-
 def triangle_claims(where, rows):
     """The triangle sinks or barely rises where the disk rises fastest, and mostly sinks."""
-    triangle, disk = of_shape(rows, "triangle"), of_shape(rows, "disk")
+    triangle, disk = of_shapes(rows, "triangle"), of_shapes(rows, "disk")
     if triangle.empty or disk.empty:
         return []
     periods, points = runs.rates(disk)
@@ -174,7 +169,7 @@ def triangle_claims(where, rows):
 
 def amplitude_order_claims(rows):
     """The disk rises faster at a larger amplitude."""
-    disk = rows[(rows["shape"] == "disk") & (rows["period"] > runs.TURN)]
+    disk = of_shapes(rows[rows["period"] > runs.TURN], "disk")
     claims = []
     for small, large in zip(amplitudes := sorted(disk["amplitude"].unique()), amplitudes[1:]):
         both = [disk[disk["amplitude"] == amplitude] for amplitude in (small, large)]

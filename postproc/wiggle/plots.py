@@ -1,6 +1,7 @@
 """The figures of a wiggle campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
 
 import itertools
+from functools import partial
 
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
@@ -116,40 +117,30 @@ def colour_map(campaign, rows, claims):
     return figure
 
 
+def against(rows, claims, key, xlabel):
+    """Return (figure, axes): V_y against a key of the study, a panel for each shape, a line for each period."""
+    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", partial(curve, key=key, name=RATE), xlabel)
+    axes[0].legend()
+    return figure, axes
+
+
 def against_amplitude(campaign, rows, claims):
-    """V_y against A, a panel for each shape, a line for each period, with the cavity model's A_min."""
-
-    def points_of(of_one):
-        return curve(of_one, "amplitude", RATE)
-
-    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "$A$  [$d$]")
+    """V_y against A, with the cavity model's A_min."""
+    figure, axes = against(rows, claims, "amplitude", "$A$  [$d$]")
     for panel in axes:
         panel.axvline(smallest_amplitude(), color=GREY, linewidth=0.5, linestyle=":")
-    axes[0].legend()
     return figure
 
 
 def against_mass(campaign, rows, claims):
-    """V_y against the body's mass, a panel for each shape, a line for each period."""
-
-    def points_of(of_one):
-        return curve(of_one, "intruder_mass", RATE)
-
-    xlabel = r"mass of the body  [$\rho d^2$]"
-    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, xlabel)
-    axes[0].legend()
-    return figure
+    """V_y against the body's mass."""
+    return against(rows, claims, "intruder_mass", r"mass of the body  [$\rho d^2$]")[0]
 
 
 def against_friction(campaign, rows, claims):
-    """Fig. 6: V_y against mu, a panel for each shape, a line for each period."""
-
-    def points_of(of_one):
-        return curve(of_one, "mu", RATE)
-
-    figure, axes, _ = lines_by_shape(rows, claims, "period", "T = {:g}", points_of, "friction coefficient μ")
+    """Fig. 6: V_y against mu, one range for all shapes."""
+    figure, axes = against(rows, claims, "mu", "friction coefficient μ")
     share_y(axes)
-    axes[0].legend()
     return figure
 
 

@@ -24,9 +24,9 @@ def by_shape(rows):
         yield shape, rows[rows["shape"] == shape]
 
 
-def of_shape(rows, shape, **keys):
-    """Return the rows of one shape whose other keys have these values."""
-    return at(rows[rows["shape"] == shape], **keys)
+def of_shapes(rows, *shapes):
+    """Return the rows of one or several shapes."""
+    return rows[rows["shape"].isin(shapes)]
 
 
 def title(shape):
@@ -61,8 +61,7 @@ def mean_rise(rows):
 
 def largest_motion(rows):
     """Return the rise rate of largest size over the periods, without its sign; UNKNOWN without runs."""
-    found = max(rates(rows)[1], key=lambda m: abs(m.value), default=UNKNOWN)
-    return Measured(abs(found.value), found.error)
+    return max(map(abs, rates(rows)[1]), key=lambda m: m.value, default=UNKNOWN)
 
 
 def first_rising_period(rows):
