@@ -33,6 +33,8 @@ public:
 		visit("lastStep", &Drive::lastStep, "last step that the drive acted in");
 	}
 
+	bool reads_all_bodies() const override { return false; }
+
 	Real work = 0;
 	Vector3r force = Vector3r::Zero();
 	Vector3r torque = Vector3r::Zero();

@@ -10,9 +10,11 @@ const char* const GrainLoop::documentation =
 	"Stands last in O.engines, after measures and drives: O.engines = "
 	"[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
 	"Clumps, and disks that are driven, partly blocked, large or `watched`, are written "
-	"to YADE at every step; all others at the end of\n"
-	"O.run, every `syncEvery` steps and by sync(). What Python writes into a free disk "
-	"is seen after read(). Orientations of free disks\n"
+	"to YADE at every step; all others where somebody may look: at the end of\n"
+	"O.run, before engines that read bodies (PyRunner, recorders, engines of your own), every `syncEvery` steps and by sync(). "
+	"What\n"
+	"they write into bodies, forces that are added to O.forces, and settings of the loop are heard at once. Orientations of free "
+	"disks\n"
 	"are not kept. Raises ValueError for shapes other than disks, a time step above the "
 	"critical one and numbers out of range; a guard\n"
 	"stops the run where grains overlap by more than `largestOverlap` of a radius or leave the box (see `bounds`).";
@@ -38,11 +40,21 @@ loop::Scene GrainLoop::settings() const
 	return s;
 }
 
+void GrainLoop::require_scene()
+{
+	require_cell();
+	require_periods();
+	meet_engines();
+	loop::Scene read;
+	loop::read_yade(*scene, watched, read);
+}
+
 void GrainLoop::build()
 {
 	loop::Scene s = settings();
+	require_cell();
 	require_periods();
-	require_alone();
+	meet_engines();
 	s.walls = walls();
 	s.target_area_fraction = targetAreaFraction;
 	map_ = loop::read_yade(*scene, watched, s);
@@ -52,6 +64,16 @@ void GrainLoop::build()
 	bring_walls();
 	read_from_ = scene;
 	stepper_->speak_of(map_.grain_id, scene->iter);
+	note_what_was_built();
+	require_spread();
+}
+
+void GrainLoop::note_what_was_built()
+{
+	built_watched_ = watched, built_periods_ = periods;
+	if (scene->isPeriodic) built_cell_ = scene->cell->hSize;
+	settings_changed_ = pushed_ = open_ = false;
+	written_.clear();
 }
 
 void GrainLoop::bring_guards()
@@ -65,10 +87,13 @@ void GrainLoop::bring_guards()
 loop::Stepper& GrainLoop::stepper()
 {
 	if (!scene) throw std::runtime_error("GrainLoop is in no scene yet; put it into O.engines and run a step first");
+	require_cell();
 	if (!stepper_ || read_from_ != scene) build();
 	if (map_.known_bodies != scene->bodies->size())
 		throw std::runtime_error(
 			"GrainLoop: bodies were added to or removed from O.bodies; call sync() before and read() after such a change");
+	hear_settings();
+	hear_bodies();
 	bring_guards();
 	stepper_->target_area_fraction() = targetAreaFraction;
 	if (!stepper_->step_under_way()) stepper_->track_energy(trackEnergy);
@@ -96,19 +121,27 @@ void GrainLoop::compute_body_forces()
 
 void GrainLoop::action()
 {
+	meet_engines();
 	stepper();
 	const bool look_at_all = scene->stopAtIter != run_end_ || scene->iter % 100 == 0;
-	require_bodies(look_at_all);
-	compute_body_forces();
-	if (look_at_all) release_what_moves();
 	run_end_ = scene->stopAtIter;
+	require_bodies(look_at_all);
+	if (look_at_all) require_spread();
+	release_what_moves();
+	compute_body_forces();
 	follow_bodies();
-	guarded([&] { stepper().step(1); });
+	take_outside_forces();
+	guarded([&] { stepper_->step(1); });
 	write_bodies();
-	if (last_step_of_run() || (syncEvery > 0 && (scene->iter + 1) % syncEvery == 0)) sync();
+	if (someone_may_look()) sync();
 }
 
-bool GrainLoop::last_step_of_run() const { return scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter; }
+bool GrainLoop::last_step_of_run() const
+{
+	return (scene->stopAtIter > 0 && scene->iter + 1 >= scene->stopAtIter) ||
+	       (scene->stopAtTime > 0 && scene->time + scene->dt >= scene->stopAtTime) ||
+	       !Singleton<yade::Omega>::instance().isRunning();
+}
 
 }  // namespace graindrive
 

@@ -38,6 +38,9 @@ public:
 			"xLow, yLow, xHigh, yHigh [m]: a centre beyond stops the run; equal numbers: no bound along that axis. By default a "
 			"grain is\n"
 			"lost three diameters below the last frozen or driven disk, where gravity pulls. Walls bound grains in any case");
+		visit("trusted", &Self::trusted,
+			"names of engines in O.engines that GrainLoop does not know, and that do no more than read and change bodies and add "
+			"forces");
 		visit("watched", &Self::watched,
 			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
 		visit(
@@ -55,6 +58,7 @@ public:
 		visit("springs", &Self::springs, "id, id, tangential spring [m] of the contacts at the last sync, for O.save");
 	}
 	void check() const;
+	void assigned(const std::string& name);
 	void action() override;
 
 	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
@@ -67,6 +71,8 @@ public:
 	void begin_on_step();
 	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
 	void read();
+	/// What `build` demands of YADE's scene, before the first step.
+	void require_scene();
 	/// Writes loop, bodies and the engines of O.engines that are ours into one file; `saved_scene` is what O.save wrote, or nothing.
 	void save_checkpoint(const std::string& path, const std::string& saved_scene);
 	/// Goes on from such a file in the same scene, built anew or loaded. Changes nothing where it refuses the file.
@@ -91,6 +97,7 @@ public:
 	int threads = 1;
 	long syncEvery = 0;
 	std::vector<int> watched;
+	std::vector<std::string> trusted;
 	std::vector<Real> springs, loads, wallSettings, wallSprings, bounds;
 	Real targetAreaFraction = 0;
 	bool trackEnergy = false;
@@ -102,13 +109,40 @@ private:
 	long run_end_ = -2;
 	std::vector<loop::Touch> touches_;
 
+	/// A grain as YADE's body shows it to everyone: its motion, and what may not change without reading the scene anew.
+	struct Written {
+		Real x, y, vx, vy, spin, z, vz, spin_x, spin_y, mass, inertia, radius;
+		unsigned blocked;
+		int mask, clump, flags;
+		bool operator==(const Written& other) const;
+	};
+	std::vector<Written> written_;  // by grain, at the last sync
+	bool open_ = false;             // somebody may have written into bodies since then
+	std::vector<loop::Grain> heard_motions_;
+
+	/// An engine of O.engines that may read or change any body, and whether it acts behind the loop in a step.
+	struct Onlooker {
+		const yade::Engine* engine;
+		bool behind;
+	};
+	std::vector<Onlooker> onlookers_;
+	std::vector<const yade::Engine*> met_engines_;
+	std::vector<bool> met_dead_;
+
+	bool settings_changed_ = false, pushed_ = false;
+	std::vector<int> built_watched_;
+	Vector3r built_periods_ = Vector3r::Zero();
+	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();
+
 	loop::ContactLaw contact_law() const;
 	loop::Scene settings() const;
 	void build();
+	void note_what_was_built();
 	template <class Work>
 	void guarded(Work work);
 	void compute_body_forces();
 	void follow_bodies();
+	static Real turn_in_plane(const Quaternionr& from, const Quaternionr& to, int id);
 	std::vector<loop::Spring> kept_springs() const;
 	void keep_walls();
 	void bring_walls();
@@ -119,7 +153,17 @@ private:
 	void release_what_moves();
 	bool last_step_of_run() const;
 	void require_bodies(bool all) const;
-	void require_alone() const;
+	void meet_engines();
+	bool someone_may_look() const;
+	static Written written_in(const yade::Body& body);
+	bool is_member_or_body(std::size_t grain) const;
+	void remember_what_is_written();
+	void hear_bodies();
+	void hear_settings();
+	void require_cell();
+	void require_spread() const;
+	void take_outside_forces();
+	void push_with(int id, const Vector3r& force, const Vector3r& torque, std::vector<loop::Push>& pushes);
 	int body_index(int id);
 	void add_grains(SceneView& view) const;
 };

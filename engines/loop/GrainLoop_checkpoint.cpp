@@ -78,6 +78,7 @@ struct Surroundings {
 	{
 		visit(saved_scene);
 		visit(map.grain_id), visit(map.grain_of_id), visit(map.body_id), visit(map.body_of_id), visit(map.known_bodies);
+		visit(map.frozen_id), visit(map.turned);
 		visit(bodies), visit(iter), visit(time);
 		auto count = std::uint64_t(engines.size());
 		visit(count);
@@ -208,6 +209,7 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 	read_from_ = scene;
 	run_end_ = -2;
 	watched = settings.watched, loads = settings.loads;
+	note_what_was_built();
 	trackEnergy = stepper_->energy_ledger() != nullptr;
 	targetAreaFraction = stepper_->target_area_fraction();
 	stepper_->speak_of(map_.grain_id, scene->iter - stepper_->steps_done());

@@ -1,4 +1,4 @@
-/// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, a second integrator.
+/// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, disks that meet across an axis left free.
 #include <algorithm>
 #include <cmath>
 
@@ -81,17 +81,23 @@ void GrainLoop::require_bodies(bool all) const
 	if (all) require_all(map_.grain_id);
 }
 
-/// Two integrators would move everything twice.
-void GrainLoop::require_alone() const
+/// An axis of the cell that is left free must be longer than the scene: YADE lets grains meet across it.
+void GrainLoop::require_spread() const
 {
-	for (const auto& engine : scene->engines) {
-		const std::string name = engine->getClassName();
-		const bool rival =
-			(name == class_name && engine.get() != this) || name == "NewtonIntegrator" || name == "InteractionLoop";
-		if (rival && !engine->dead)
-			throw std::runtime_error(
-				"GrainLoop takes the place of collider, InteractionLoop and NewtonIntegrator; O.engines also holds " + name +
-				": remove it");
+	if (!scene->isPeriodic) return;
+	for (int axis = 0; axis < 2; ++axis) {
+		if (periods[axis] != 0) continue;
+		Real low = HUGE_VAL, high = -HUGE_VAL;
+		for (std::size_t g = 0; g < stepper_->size(); ++g) {
+			const loop::Grain grain = stepper_->grain(g);
+			const Real at = axis == 0 ? grain.x : grain.y;
+			low = std::min(low, at - grain.radius), high = std::max(high, at + grain.radius);
+		}
+		const Real edge = scene->cell->hSize(axis, axis);
+		if (high - low <= edge) continue;
+		throw std::invalid_argument(std::string("GrainLoop: disks reach over ") + std::to_string(high - low) + " m along " +
+									"xy"[axis] + ", where O.cell repeats after " + std::to_string(edge) +
+									" m and GrainLoop.periods is 0; give that period, or make the cell longer");
 	}
 }
 

@@ -78,6 +78,11 @@ void begin_on_step(GrainLoop& loop)
 	running(loop);
 	loop.begin_on_step();
 }
+void require_scene(GrainLoop& loop)
+{
+	loop.scene = scene_of_yade();
+	loop.require_scene();
+}
 long searches(GrainLoop& loop) { return running(loop).searches_done(); }
 
 std::string processor(GrainLoop& loop)
@@ -101,6 +106,10 @@ void bind_loop()
 	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all disks into O.bodies.");
 	cls.def("read", &GrainLoop::read,
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
+	cls.def("requireScene", require_scene,
+		"Check that GrainLoop can move what stands in O.bodies, O.cell and O.engines, before the first step. Raises ValueError "
+		"or\n"
+		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
 	cls.def("contacts", contacts,
 		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).");

@@ -5,6 +5,7 @@
 
 namespace graindrive {
 
+/// Drives and Python move bodies by writing into YADE's: place, velocity, turn and freedoms are heard at every step.
 void GrainLoop::follow_bodies()
 {
 	for (std::size_t b = 0; b < map_.body_id.size(); ++b) {
@@ -13,28 +14,26 @@ void GrainLoop::follow_bodies()
 		loop::RigidBody& body = stepper_->bodies()[b];
 		loop::read_state(state, body);
 		body.x = state.pos[0], body.y = state.pos[1];
+		const Quaternionr shown = loop::orientation(body, map_.turned[b]);
+		if (state.ori.coeffs() != shown.coeffs()) body.angle += turn_in_plane(shown, state.ori, map_.body_id[b]);
 	}
+}
+
+/// The angle about z from one orientation to another [rad].
+Real GrainLoop::turn_in_plane(const Quaternionr& from, const Quaternionr& to, int id)
+{
+	const Quaternionr turn = to * from.conjugate();
+	if (std::hypot(turn.x(), turn.y()) > 1e-9)
+		throw std::runtime_error(
+			"GrainLoop: body " + std::to_string(id) + " was turned out of the plane; GrainLoop turns bodies about z alone");
+	return 2 * std::atan2(turn.z() * (turn.w() < 0 ? -1 : 1), std::abs(turn.w()));
 }
 
 void GrainLoop::write_bodies()
 {
 	for (std::size_t b = 0; b < map_.body_id.size(); ++b)
-		if (map_.body_id[b] >= 0) loop::write_state(stepper_->bodies()[b], *(*scene->bodies)[map_.body_id[b]]->state);
-}
-
-/// A frozen disk that someone has set in motion becomes a body of its own.
-void GrainLoop::release_what_moves()
-{
-	bool moves = false;
-	for (std::size_t g = 0; g < map_.grain_id.size() && !moves; ++g) {
-		const int owner = stepper_->settings().grains[g].body;
-		if (owner != loop::free_grain && map_.body_id[owner] < 0)
-			moves = !loop::is_frozen(*(*scene->bodies)[map_.grain_id[g]]->state);
-	}
-	if (!moves) return;
-	sync();
-	build();
-	compute_body_forces();
+		if (map_.body_id[b] >= 0)
+			loop::write_state(stepper_->bodies()[b], map_.turned[b], *(*scene->bodies)[map_.body_id[b]]->state);
 }
 
 void GrainLoop::sync()
@@ -59,12 +58,14 @@ void GrainLoop::sync()
 	springs.clear();
 	for (const loop::Spring& s : stepper_->springs())
 		springs.insert(springs.end(), { Real(map_.grain_id[s.first]), Real(map_.grain_id[s.second]), s.slip });
+	remember_what_is_written();
 }
 
 void GrainLoop::read()
 {
 	keep_walls();
 	stepper_.reset();
+	open_ = false;
 }
 
 void GrainLoop::begin_on_step()

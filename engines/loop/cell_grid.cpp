@@ -24,8 +24,7 @@ GridAxis axis(double low, double high, bool periodic, double reach, std::uint32_
 	if (periodic && a.cells < cells_needed_when_periodic) {
 		std::ostringstream message;
 		message << "a periodic box must be at least " << cells_needed_when_periodic * reach << " m long in " << name
-				<< " (three of the largest free grains, with skin), got " << a.length
-				<< " m; lengthen it or make the grain a rigid body";
+				<< " (three of the largest free grains, with skin), got " << a.length << " m; lengthen it";
 		throw std::invalid_argument(message.str());
 	}
 	a.per_length = a.length > 0 ? a.cells / a.length : 0;

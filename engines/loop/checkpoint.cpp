@@ -124,7 +124,7 @@ void Stepper::visit_state(Visitor&& visit, Self& s)
 	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
 	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.guards);
 	visit(s.travelled), visit(s.allowed), visit(s.pace), visit(s.selection_due);
-	visit(s.wall_touches), visit(s.moved_near_walls);
+	visit(s.wall_touches), visit(s.moved_near_walls), visit(s.pushes);
 }
 
 void Stepper::save(const std::string& path, const std::string& companion)
@@ -164,10 +164,10 @@ std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, 
 void Stepper::resume()
 {
 	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
+	measure_reach();
 	if (selections == 0) return;
-	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
+	lay_out_pairs();
 	find_neighbours();
-	point_at_lists();
 }
 
 }  // namespace graindrive::loop

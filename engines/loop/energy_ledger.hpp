@@ -13,7 +13,7 @@
 ///   stiffening     1/2 s_{n-1} s_n (k_n - k_{n-1}): Hertz's k_t grows with delta, so a stretched spring gains and loses energy with the
 ///                  load although no force does work. The law is not conservative in this; the term can have either sign.
 ///   opening        1/2 k_t s^2 of contacts that part while their spring is stretched
-///   work           of driven degrees of freedom, walls and loads on the grains
+///   work           of driven degrees of freedom, walls, loads and forces from outside on the grains
 ///   time step      an elastic force's work in steps is not exactly its closed form, most of all in the steps in which a contact begins
 ///                  and ends; that difference, and a contact's turning between two steps, contact by contact: what leapfrog itself adds
 /// Nothing is a remainder of the whole: forces are computed anew from the motion, and `residual` is what all entries together fail to explain. It is

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "engines/loop/stepper.hpp"
 
@@ -76,7 +77,111 @@ struct StiffnessOf {
 	}
 };
 
+/// What a member of a body may touch: a grain, or a member of another body.
+struct Partner {
+	double radius, inverse_mass;  // [m], [1/kg]
+	double inverse_sliding_mass;  // of the surface, along the contact [1/kg]
+	double inverse_pressed_mass;  // against the contact [1/kg]
+};
+
+/// A member's part in a contact: its body yields by moving and by turning, with a lever of at most its distance from the centre.
+Partner as_partner(const RigidBody& body, const Grain& member)
+{
+	const double arm = std::hypot(member.x - body.x, member.y - body.y), reach = arm + member.radius;
+	const double moving = (body.responds_x || body.responds_y) ? 1 / body.mass : 0,
+				 turning = body.responds_spin ? 1 / body.inertia : 0;
+	return { member.radius, std::isfinite(member.mass) ? 1 / member.mass : 0, moving + reach * reach * turning,
+		moving + arm * arm * turning };
+}
+
+Partner as_partner(const Scene& scene, const Grain& grain)
+{
+	if (grain.body != free_grain) return as_partner(scene.bodies[grain.body], grain);
+	const double spin_response = scene.rotation ? scene.spin_response : 0;
+	return { grain.radius, 1 / grain.mass, (1 + spin_response) / grain.mass, 1 / grain.mass };
+}
+
+/// The grains that decide: the lightest and the largest free one, and the largest member of each body.
+std::vector<std::size_t> telling_grains(const Scene& scene)
+{
+	constexpr std::size_t none = -1;
+	std::size_t lightest = none, largest = none;
+	std::vector<std::size_t> of_body(scene.bodies.size(), none), all;
+	const auto larger = [&](std::size_t i, std::size_t than) {
+		return than == none || scene.grains[i].radius > scene.grains[than].radius;
+	};
+	for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+		const Grain& g = scene.grains[i];
+		if (g.body != free_grain) {
+			if (larger(i, of_body[g.body])) of_body[g.body] = i;
+			continue;
+		}
+		if (lightest == none || g.mass < scene.grains[lightest].mass) lightest = i;
+		if (larger(i, largest)) largest = i;
+	}
+	for (const std::size_t i : { lightest, largest })
+		if (i != none) all.push_back(i);
+	for (const std::size_t i : of_body)
+		if (i != none) all.push_back(i);
+	return all;
+}
+
+double critical_step_of(const Scene& scene, const Partner& one, const Partner& other, double overlap)
+{
+	const double inverse_mass = one.inverse_mass + other.inverse_mass;
+	const double radius = one.radius * other.radius / (one.radius + other.radius);
+	const double depth = overlap * std::min(one.radius, other.radius);
+	const Stiffness k = std::visit(StiffnessOf{ radius, inverse_mass > 0 ? 1 / inverse_mass : 0, depth }, scene.law);
+	double smallest = HUGE_VAL;
+	if (const double yields = one.inverse_pressed_mass + other.inverse_pressed_mass; yields > 0)
+		smallest = limit(k.normal, k.normal_dashpot, 1 / yields);
+	if (const double yields = one.inverse_sliding_mass + other.inverse_sliding_mass;
+		yields > 0 && scene.friction && k.tangential > 0)
+		smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, 1 / yields));
+	return smallest;
+}
+
+/// A pair is met through one image: the nearest. Where a second image could touch as well, a contact would be lost.
+void check_images(const Scene& scene)
+{
+	const std::vector<std::size_t> telling = telling_grains(scene);
+	const auto check = [&](bool periodic, double length, const char* axis) {
+		if (!periodic) return;
+		for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+			const Grain& member = scene.grains[i];
+			if (member.body == free_grain) continue;
+			for (const std::size_t j : telling) {
+				const Grain& other = scene.grains[j];
+				if (other.body == member.body) continue;
+				if (other.body != free_grain && scene.bodies[other.body].frozen && scene.bodies[member.body].frozen) continue;
+				require(2 * (member.radius + other.radius) <= length,
+					"a disk of a body must not touch another disk through two of "
+					"its images: the period in ",
+					axis, " must be at least ", 2 * (member.radius + other.radius), " m, got ", length,
+					"; lengthen it, or make the body of smaller disks (grain ", i, ")");
+			}
+		}
+	};
+	check(scene.box.periodic_x, scene.box.x_high - scene.box.x_low, "x");
+	check(scene.box.periodic_y, scene.box.y_high - scene.box.y_low, "y");
+}
+
 }  // namespace
+
+double critical_time_step_of_bodies(const Scene& scene, double overlap)
+{
+	double smallest = HUGE_VAL;
+	const std::vector<std::size_t> telling = telling_grains(scene);
+	for (const Grain& member : scene.grains) {
+		if (member.body == free_grain) continue;
+		const Partner one = as_partner(scene.bodies[member.body], member);
+		if (one.inverse_sliding_mass == 0) continue;  // it yields to nothing
+		for (const std::size_t other : telling)
+			if (scene.grains[other].body != member.body)
+				smallest = std::min(smallest, critical_step_of(scene, one, as_partner(scene, scene.grains[other]), overlap));
+	}
+	return smallest;
+}
 
 void check_scene(const Scene& scene)
 {
@@ -92,6 +197,12 @@ void check_scene(const Scene& scene)
 	const double critical = critical_time_step(scene);
 	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,
 		", got ", scene.dt, "; lower it or take softer grains");
+	const double of_bodies = critical_time_step_of_bodies(scene);
+	require(scene.dt <= of_bodies,
+		"time step must not exceed the critical one of the lightest body (clump, large, watched or driven "
+		"disk) at its stiffest contact, ",
+		of_bodies, ", got ", scene.dt, "; lower it, take softer grains, or give the body more mass and inertia");
+	check_images(scene);
 }
 
 double critical_time_step(const Scene& scene, double overlap)

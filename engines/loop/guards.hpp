@@ -26,6 +26,10 @@ void check_scene(const Scene& scene);
 /// a third of m_eff for disks. Hertz stiffness grows with the overlap, so it is taken where the overlap guard stops a run.
 double critical_time_step(const Scene& scene, double overlap = 0.1);
 
+/// The same for rigid bodies that respond, each against its stiffest partner: in translation, and in turning with the longest lever
+/// that a contact can have, the member's distance from the centre (and its radius, for sliding); infinite where none responds [s].
+double critical_time_step_of_bodies(const Scene& scene, double overlap = 0.1);
+
 /// Walls lie where they may, and their grains bear the time step. @throws std::invalid_argument naming the wall and the rule
 void check_walls(const Scene& scene);
 

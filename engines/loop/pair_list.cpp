@@ -211,6 +211,17 @@ void PairList::put_back_slips()
 		if (place[c]) put(slips, place[c], candidates[c].slip);
 }
 
+void PairList::keep_early_slips()
+{
+	early_slips.clear();
+	for (const std::uint32_t c : early) early_slips.push_back(slip(c));
+}
+
+void PairList::put_back_early_slips()
+{
+	for (std::size_t k = 0; k < early.size(); ++k) put(slips, place[early[k]], early_slips[k]);
+}
+
 void PairList::put(AlignedVector<double>& list, std::uint32_t at, double number)
 {
 	if (precision == Precision::double_)

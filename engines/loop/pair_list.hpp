@@ -36,6 +36,9 @@ public:
 	/// Brings the tangential springs of the selected pairs back into the candidates.
 	void keep_slips();
 	void put_back_slips();  ///< and into the kernels' memory again
+	/// The same for the early pairs alone, which cost little.
+	void keep_early_slips();
+	void put_back_early_slips();
 	void point(KernelData& data);
 
 	std::vector<SweepRange> sweeps;  ///< one per thread
@@ -71,6 +74,7 @@ private:
 		bool partner;
 	};
 	std::vector<Surplus> surplus;
+	std::vector<double> early_slips;                                         // as keep_early_slips found them
 	std::vector<std::uint32_t> early, with_members;                          // candidates
 	std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;  // by grain: pairs selected, slots filled
 

@@ -29,8 +29,9 @@ struct RigidBody {
 	double mass = 0, inertia = 0;                                        ///< [kg], [kg m^2]; needed where the body responds
 	bool responds_x = false, responds_y = false, responds_spin = false;  ///< to contacts and gravity
 	bool frozen = false;  ///< will never move: costs nothing, knows no forces, and meets no other frozen body
-	double force_x = 0, force_y = 0, torque = 0;  ///< by contacts, in the last step [N], [N m]
-	double load_x = 0, load_y = 0;                ///< a constant force on what responds [N]
+	double force_x = 0, force_y = 0, torque = 0;     ///< by contacts, in the last step [N], [N m]
+	double load_x = 0, load_y = 0;                   ///< a constant force on what responds [N]
+	double push_x = 0, push_y = 0, push_torque = 0;  ///< from outside, in the step that comes [N], [N m]
 };
 
 struct Box {

@@ -8,14 +8,19 @@
 
 namespace graindrive::loop {
 
-Stepper::Stepper(const Scene& given)
-	: scene(given),
-	  kernel(choose_kernel({ given.law.index(), given.friction, given.precision })),
-	  team(given.threads)
+Stepper::Stepper(const Scene& given) : scene(given)
 {
 	check_scene(scene);
 	check_walls(scene);
 	arrange_rows();
+	set_up_kernels();
+}
+
+/// What follows from the settings alone.
+void Stepper::set_up_kernels()
+{
+	kernel = choose_kernel({ scene.law.index(), scene.friction, scene.precision });
+	if (!team || team->size() != scene.threads) team = std::make_unique<ThreadTeam>(scene.threads);
 	data.dt = data.kick = data.drift = scene.dt;
 	data.gravity_x = scene.gravity_x;
 	data.gravity_y = scene.gravity_y;
@@ -23,7 +28,7 @@ Stepper::Stepper(const Scene& given)
 	data.law = &scene.law;
 	if (scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = scene.box.x_high - scene.box.x_low);
 	if (scene.box.periodic_y) data.inverse_length_y = 1 / (data.length_y = scene.box.y_high - scene.box.y_low);
-	thread_beyond.resize(scene.threads);
+	thread_beyond.assign(scene.threads, 0);
 }
 
 void Stepper::arrange_rows()
@@ -35,7 +40,6 @@ void Stepper::arrange_rows()
 	n_free = index_of.size();
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
 		body_members.push_back(index_of.size() - n_free);
-		double reach = 0;
 		const RigidBody& body = scene.bodies[b];
 		for (std::uint32_t i = 0; i < n_grains; ++i) {
 			const Grain& g = scene.grains[i];
@@ -43,9 +47,7 @@ void Stepper::arrange_rows()
 			index_of.push_back(i);
 			const double dx = g.x - body.x, dy = g.y - body.y, c = std::cos(body.angle), s = std::sin(body.angle);
 			members.push_back({ c * dx + s * dy, c * dy - s * dx, 0, 0, static_cast<int>(b) });
-			reach = std::max(reach, std::hypot(dx, dy) + g.radius);
 		}
-		body_reach.push_back(reach);
 		body_fixed.push_back(body.frozen);
 	}
 	body_members.push_back(members.size());
@@ -62,12 +64,23 @@ void Stepper::arrange_rows()
 	rows[n_grains] = { 0, 0, 0, 0, typical_diameter, 0, 1, 0 };  // a pair that never touches fills up packs
 	rows[n_grains + 1] = { 10 * typical_diameter, 0, 0, 0, typical_diameter, 0, 1, 0 };
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) place_members(b);
+	measure_reach();
+}
+
+/// From the members' places in the body, which stay as they are: a restart must find the same numbers wherever the body has gone.
+void Stepper::measure_reach()
+{
+	body_reach.assign(scene.bodies.size(), 0);
+	for (std::size_t m = 0; m < members.size(); ++m) {
+		double& reach = body_reach[members[m].body];
+		reach = std::max(reach, std::hypot(members[m].x, members[m].y) + rows[n_free + m].radius);
+	}
 }
 
 void Stepper::step(long n)
 {
 	failure = nullptr;
-	team.run([&](int rank) { advance(rank, n); });
+	team->run([&](int rank) { advance(rank, n); });
 	if (failure) std::rethrow_exception(failure);
 }
 
@@ -97,7 +110,8 @@ void Stepper::compute_body_forces()
 	failure = nullptr;
 	prepare();
 	if (failure) std::rethrow_exception(failure);
-	team.run([&](int rank) { compute_early_pairs(rank); });
+	pairs.keep_early_slips();
+	team->run([&](int rank) { compute_early_pairs(rank); });
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
 		if (!body_fixed[b]) collect_forces(b);
 	body_forces_known = true;
@@ -106,7 +120,7 @@ void Stepper::compute_body_forces()
 void Stepper::advance(int rank, long n)
 {
 	const bool known = body_forces_known;
-	team.barrier();  // everyone has read it before the first step changes it
+	team->barrier();  // everyone has read it before the first step changes it
 	for (long k = 0; k < n; ++k)
 		if (!one_step(rank, k == 0 && known)) return;
 }
@@ -116,16 +130,16 @@ bool Stepper::one_step(int rank, bool early_pairs_done)
 {
 	if (!early_pairs_done) {
 		if (rank == 0) prepare();
-		team.barrier();
+		team->barrier();
 		if (failure) return false;
 		compute_early_pairs(rank);
-		team.barrier();
+		team->barrier();
 	}
 	const SweepRange& mine = pairs.sweeps[rank];
 	thread_beyond[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
-	team.barrier();
+	team->barrier();
 	if (rank == 0) finish();
-	team.barrier();
+	team->barrier();
 	return true;
 }
 
@@ -163,6 +177,7 @@ void Stepper::finish()
 		move_body(b);
 	}
 	if (!scene.walls.empty()) move_walls();
+	if (!pushes.empty()) push_grains();
 	if (books) book_energy();
 	spend_budgets();
 	++steps;
@@ -186,11 +201,16 @@ void Stepper::select()
 		reach[i] = { rows[i].radius + budget, rows[i].radius + std::max(budget / 2, std::min(budget, smallest_budget())) };
 	}
 	choose_pace(pairs.select(rows.data(), scene.box, reach));
-	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
-	point_at_lists();
+	lay_out_pairs();
 	std::fill(travelled.begin(), travelled.end(), 0);
 	selection_due = false;
 	++selections;
+}
+
+void Stepper::lay_out_pairs()
+{
+	pairs.lay_out(rows.data(), n_free, n_grains, scene.threads, scene.precision, n_grains);
+	point_at_lists();
 }
 
 std::size_t Stepper::pairs_selected() const

@@ -37,6 +37,12 @@ struct Touch {
 	bool slipping;                  ///< Coulomb's bound is active
 };
 
+/// A force and a torque from outside on a free grain.
+struct Push {
+	std::uint32_t grain;  ///< index in `Scene::grains`
+	double x, y, torque;  ///< [N], [N m]
+};
+
 /// How a step is checked while it runs.
 struct Guards {
 	long every = 100;              ///< steps between two looks at every pair
@@ -57,6 +63,8 @@ public:
 	/// `touches_on` tells their contacts. The next step goes on from there, with velocities of bodies as they are then.
 	void compute_body_forces();
 	bool step_under_way() const { return body_forces_known; }
+	/// Forgets them, as if they had not been computed.
+	void take_back_body_forces();
 
 	/// For velocities given on the step, not half a step behind: takes the first half kick (springs are left as they are).
 	void begin_on_step();
@@ -74,7 +82,8 @@ public:
 
 	std::size_t size() const { return scene.grains.size(); }
 	Grain grain(std::size_t index) const;
-	void positions(double* xy) const;  ///< size() pairs, in the order of `Scene::grains`
+	Vector2r arm(std::size_t member) const;  ///< of a body's grain, from the body's centre [m]
+	void positions(double* xy) const;        ///< size() pairs, in the order of `Scene::grains`
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
 	std::vector<Contact> contacts() const;
@@ -82,6 +91,14 @@ public:
 	std::vector<Contact> present_contacts();
 	/// Appends the contacts on a body, as of the last `compute_body_forces` or step.
 	void touches_on(std::size_t body, std::vector<Touch>& touches) const;
+
+	/// Forces from outside on free grains, from the next step until they are set anew; those on bodies stand in `bodies()`.
+	void set_pushes(std::vector<Push> on_grains);
+	/// Gives a grain another place, velocity and spin, between two steps.
+	void put(std::size_t index, const Grain& grain);
+	/// Goes on with law, friction, gravity, precision, threads and skin of `wanted`. Springs stay while the kind of law does.
+	/// @throws std::invalid_argument as the constructor, and for another physics while energy is tracked
+	void change(const Scene& wanted);
 
 	std::vector<Spring> springs() const;
 	void set_springs(const std::vector<Spring>& springs);  ///< before the first step
@@ -116,7 +133,7 @@ private:
 	Scene scene;
 	Kernel kernel;
 	KernelData data{};
-	ThreadTeam team;
+	std::unique_ptr<ThreadTeam> team;
 	AlignedVector<GrainRow> rows;         // free grains by cell, members of bodies, two dummies
 	std::vector<std::uint32_t> index_of;  // place in memory -> index in Scene::grains
 	std::vector<std::uint32_t> row_of;    // and back
@@ -148,11 +165,14 @@ private:
 	double pace = 40;  // steps between selections that budgets are made for
 	std::exception_ptr failure;
 
+	void set_up_kernels();
 	void arrange_rows();
+	void measure_reach();
 	void place_members(std::size_t body);
 	std::vector<WallTouch> wall_touches;  // near walls: by wall, then by grain
 	double moved_near_walls = std::numeric_limits<double>::infinity();
 	std::vector<Spring> given_springs;  // until the first search
+	std::vector<Push> pushes;
 	bool body_forces_known = false;
 	Guards guards;
 	std::vector<int> grain_names;  // none: indices
@@ -182,8 +202,11 @@ private:
 	void search();
 	void sort_rows();
 	void select();
+	void lay_out_pairs();
 	void point_at_lists();
 	void finish();
+	void kick_grain(std::uint32_t at, double force_x, double force_y, double surface_force);
+	void push_grains();
 	void move_body(std::size_t body);
 	void collect_forces(std::size_t body);
 	std::uint32_t n_blocks() const { return (n_free + grains_per_block - 1) / grains_per_block; }

@@ -30,9 +30,10 @@ void Stepper::collect_forces(std::size_t b)
 void Stepper::move_body(std::size_t b)
 {
 	RigidBody& body = scene.bodies[b];
-	if (body.responds_x) body.vx += ((body.force_x + body.load_x) / body.mass + data.gravity_x) * data.kick;
-	if (body.responds_y) body.vy += ((body.force_y + body.load_y) / body.mass + data.gravity_y) * data.kick;
-	if (body.responds_spin) body.spin += body.torque / body.inertia * data.kick;
+	const double force_x = body.force_x + body.load_x + body.push_x, force_y = body.force_y + body.load_y + body.push_y;
+	if (body.responds_x) body.vx += (force_x / body.mass + data.gravity_x) * data.kick;
+	if (body.responds_y) body.vy += (force_y / body.mass + data.gravity_y) * data.kick;
+	if (body.responds_spin) body.spin += (body.torque + body.push_torque) / body.inertia * data.kick;
 	body.x += body.vx * data.drift;
 	body.y += body.vy * data.drift;
 	body.angle += body.spin * data.drift;

@@ -105,6 +105,12 @@ void Stepper::move_in_books(LedgerMotion& motion)
 		weigh(mass, g_x, scene.box.periodic_x, was.x, was.vx, is.vx);
 		weigh(mass, g_y, scene.box.periodic_y, was.y, was.vy, is.vy);
 	}
+	for (const Push& push : pushes) {
+		const GrainRow &was = books->rows[row_of[push.grain]], &is = rows[row_of[push.grain]];
+		const double surface_force = push.torque / is.radius;
+		motion.loads.before += (push.x * was.vx + push.y * was.vy + surface_force * was.surface_speed) * half;
+		motion.loads.after += (push.x * is.vx + push.y * is.vy + surface_force * is.surface_speed) * half;
+	}
 	motion.bodies.resize(scene.bodies.size());
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
 		if (body_fixed[b]) continue;
@@ -118,9 +124,9 @@ void Stepper::move_in_books(LedgerMotion& motion)
 				motion.bodies[b].before -= force * v * half, motion.bodies[b].after -= force * v_after * half;
 			}
 		};
-		axis(is.responds_x, is.mass, is.force_x, is.load_x, was.vx, is.vx, motion.translation);
-		axis(is.responds_y, is.mass, is.force_y, is.load_y, was.vy, is.vy, motion.translation);
-		axis(is.responds_spin, is.inertia, is.torque, 0, was.spin, is.spin, motion.rotation);
+		axis(is.responds_x, is.mass, is.force_x, is.load_x + is.push_x, was.vx, is.vx, motion.translation);
+		axis(is.responds_y, is.mass, is.force_y, is.load_y + is.push_y, was.vy, is.vy, motion.translation);
+		axis(is.responds_spin, is.inertia, is.torque, is.push_torque, was.spin, is.spin, motion.rotation);
 		if (is.responds_x) weigh(is.mass, g_x, scene.box.periodic_x, was.x, was.vx, is.vx);
 		if (is.responds_y) weigh(is.mass, g_y, scene.box.periodic_y, was.y, was.vy, is.vy);
 	}

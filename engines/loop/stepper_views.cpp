@@ -12,6 +12,13 @@ Grain Stepper::grain(std::size_t index) const
 		scene.grains[index].body };
 }
 
+Vector2r Stepper::arm(std::size_t index) const
+{
+	const Member& member = members.at(row_of[index] - n_free);
+	const double angle = scene.bodies[member.body].angle, c = std::cos(angle), s = std::sin(angle);
+	return { c * member.x - s * member.y, s * member.x + c * member.y };
+}
+
 void Stepper::positions(double* xy) const
 {
 	for (std::size_t i = 0; i < size(); ++i) {
@@ -121,8 +128,10 @@ double Stepper::kinetic_energy() const
 	return energy;
 }
 
+/// A trial step with half a kick, after which everything is as it was, whatever a guard says on the way.
 double Stepper::kinetic_energy_on_step()
 {
+	take_back_body_forces();
 	if (selection_due) select();  // not in the step that is undone: it may sort the rows
 	pairs.keep_slips();
 	const AlignedVector<GrainRow> before = rows;
@@ -131,22 +140,33 @@ double Stepper::kinetic_energy_on_step()
 	const auto bodies_before = scene.bodies;
 	const auto walls_before = scene.walls;
 	const auto touches_before = wall_touches;
+	const auto travelled_before = travelled;
 	const long steps_before = steps;
 	const double moved_walls = moved_near_walls;
+	const bool due_before = selection_due;
+	std::exception_ptr refusal;
 	data.kick = 0.5 * scene.dt;
 	data.drift = 0;
-	step(1);
+	try {
+		step(1);
+	} catch (...) {
+		refusal = std::current_exception();
+	}
 	const double energy = kinetic_energy();
 	data.kick = data.drift = scene.dt;
 	rows = before;
 	data.rows = rows.data();
+	travelled = travelled_before, selection_due = due_before;
+	data.travelled = travelled.data();
 	scene.bodies = bodies_before;
 	scene.walls = walls_before;
 	wall_touches = touches_before;
 	steps = steps_before;
 	moved_near_walls = moved_walls;
+	body_forces_known = false;
 	pairs.put_back_slips();
 	books.swap(aside);
+	if (refusal) std::rethrow_exception(refusal);
 	return energy;
 }
 

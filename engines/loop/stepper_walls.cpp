@@ -1,6 +1,4 @@
 /// Flat walls in a step: forces before anything moves, given to the grains after the sweep. Few grains touch a wall, so one thread does it.
-///
-/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -70,7 +68,8 @@ void check_walls(const Scene& scene)
 		require(std::isfinite(wall.velocity) && std::isfinite(wall.slide), wall, "velocity and slide must be finite [m/s]",
 			wall.velocity + wall.slide);
 		require(!(wall.across_x() ? scene.box.periodic_x : scene.box.periodic_y), wall,
-			"the box must not be periodic across it; period [m]", extent(scene, wall.across_x()));
+			"the box must not be periodic across it (leave that axis of GrainLoop.periods 0); period [m]",
+			extent(scene, wall.across_x()));
 		const Wall* facing = opposite(scene, wall);
 		require(!facing || (facing->position - wall.position) * wall.outward() < 0, wall,
 			"must lie on its side of the one that faces it, at which position [m]", wall.position);
@@ -224,18 +223,8 @@ void Stepper::move_walls()
 		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
 		const Wall& wall = scene.walls[touch.wall];
 		const double n_x = wall.across_x() ? wall.outward() : 0, n_y = wall.across_x() ? 0 : wall.outward();
-		GrainRow& row = rows[row_of[touch.grain]];
-		const double response = row.inverse_mass * data.kick;
-		const double kick_x = (-touch.normal * n_x - touch.friction * n_y) * response,
-					 kick_y = (touch.friction * n_x - touch.normal * n_y) * response;
-		row.vx += kick_x;
-		row.vy += kick_y;
-		row.x += kick_x * data.drift;
-		row.y += kick_y * data.drift;
-		row.surface_speed += touch.friction * response * data.spin_response;
-		const std::uint32_t block = party_of(row_of[touch.grain]);
-		travelled[block] += std::hypot(kick_x, kick_y) * data.drift;  // on top of what the sweep has counted
-		selection_due |= travelled[block] > allowed[block];
+		kick_grain(row_of[touch.grain], -touch.normal * n_x - touch.friction * n_y, touch.friction * n_x - touch.normal * n_y,
+			touch.friction);
 	}
 	double fastest_wall = 0;
 	for (Wall& wall : scene.walls) {

@@ -15,7 +15,7 @@ def bed(**settings):
         for column in range(25):
             disks.disk(column + 0.5, 1.1 * row + 0.6, rng.uniform(0.45, 0.5), velocity=rng.uniform(-0.1, 0.1, 2))
     disks.loop(disks.hertz(gamma_n=500, gamma_t=500), friction=0.3)
-    return grain_loop.use_grain_loop(**settings)
+    return grain_loop.use_grain_loop(periods=(O.cell.size[0], 0), **settings)  # walls stand across y
 
 
 def test_a_bed_is_compressed_to_an_area_fraction():

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace graindrive::loop {
 
@@ -11,8 +12,6 @@ namespace {
 constexpr double large = 1.5;  // times the median radius: such a disk would widen every cell of the search
 
 using yade::State;
-
-double angle_of(const State& state) { return 2 * std::atan2(state.ori.z(), state.ori.w()); }
 
 double median_radius(const yade::BodyContainer& bodies)
 {
@@ -28,7 +27,7 @@ double median_radius(const yade::BodyContainer& bodies)
 RigidBody rigid(const State& state)
 {
 	RigidBody body;
-	body.x = state.pos[0], body.y = state.pos[1], body.angle = angle_of(state);
+	body.x = state.pos[0], body.y = state.pos[1];
 	body.mass = state.mass, body.inertia = state.inertia[2];
 	read_state(state, body);
 	return body;
@@ -58,13 +57,19 @@ void read_state(const State& state, RigidBody& body)
 	body.responds_spin = !(state.blockedDOFs & State::DOF_RZ) && body.inertia > 0;
 }
 
-void write_state(const RigidBody& body, State& state)
+Quaternionr orientation(const RigidBody& body, const YadeBodies::Turned& turned)
+{
+	const Real half = (body.angle - turned.angle) / 2;
+	return Quaternionr(std::cos(half), 0, 0, std::sin(half)) * Quaternionr(turned.w, turned.x, turned.y, turned.z);
+}
+
+void write_state(const RigidBody& body, const YadeBodies::Turned& turned, State& state)
 {
 	state.pos[0] = body.x, state.pos[1] = body.y;
 	state.vel[0] = body.vx, state.vel[1] = body.vy;
 	state.angVel[2] = body.spin;
 	state.angMom[2] = body.spin * state.inertia[2];
-	state.ori = Quaternionr(std::cos(body.angle / 2), 0, 0, std::sin(body.angle / 2));
+	state.ori = orientation(body, turned);
 }
 
 namespace {
@@ -94,6 +99,36 @@ void require_plane_disks(const yade::BodyContainer& bodies, const YadeBodies& ma
 	}
 }
 
+/// Two groups of bodies that do not see each other in YADE's collider: they share no bit of their masks.
+void require_one_crowd(const yade::BodyContainer& bodies)
+{
+	std::map<int, int> first_with;  // mask -> id
+	for (std::size_t id = 0; id < bodies.size(); ++id)
+		if (bodies.exists(int(id)) && !bodies[id]->isClump()) first_with.insert({ bodies[id]->groupMask, int(id) });
+	for (auto one = first_with.begin(); one != first_with.end(); ++one)
+		for (auto other = one; other != first_with.end(); ++other)
+			if (!(one->first & other->first))
+				throw std::invalid_argument("GrainLoop lets all disks meet, but the masks of bodies " +
+											std::to_string(one->second) + " and " + std::to_string(other->second) + ", " +
+											std::to_string(one->first) + " and " + std::to_string(other->first) +
+											", share no bit, so YADE's would not; give them one, or use YADE's loop");
+}
+
+/// What YADE's collider and integrator heed and the loop does not.
+void require_plain(const yade::Body& body)
+{
+	const std::string name = "GrainLoop: body " + std::to_string(body.id);
+	if (!body.isClump() && !(body.flags & yade::Body::FLAG_BOUNDED))
+		throw std::invalid_argument(name +
+									" is not bounded, so YADE's collider would not see it; set O.bodies[...].bounded=True, or "
+									"use YADE's loop");
+	const State& state = *body.state;
+	const bool leaves_plane = (state.vel[2] != 0 || state.angVel[0] != 0 || state.angVel[1] != 0) && !body.isClumpMember();
+	if (leaves_plane)
+		throw std::invalid_argument(
+			name + " moves along z or turns about x or y; GrainLoop moves disks in their plane: set those to zero");
+}
+
 }  // namespace
 
 YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watched, Scene& scene)
@@ -104,10 +139,15 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 	map.grain_of_id.assign(bodies.size(), -1);
 	map.body_of_id.assign(bodies.size(), -1);
 	const double largest = large * median_radius(bodies);
+	require_one_crowd(bodies);
+	for (std::size_t id = 0; id < bodies.size(); ++id)
+		if (bodies.exists(int(id))) require_plain(*bodies[id]);
 	int frozen = -1;
 	const auto new_body = [&](int id, const RigidBody& body) {
+		const Quaternionr ori = id < 0 ? Quaternionr::Identity() : bodies[id]->state->ori;
 		scene.bodies.push_back(body);
 		map.body_id.push_back(id);
+		map.turned.push_back({ ori.x(), ori.y(), ori.z(), ori.w(), body.angle });
 		return int(scene.bodies.size()) - 1;
 	};
 	for (std::size_t id = 0; id < bodies.size(); ++id)
@@ -134,6 +174,7 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 			}
 			owner = frozen;
 			mass = HUGE_VAL;
+			map.frozen_id.push_back(int(id));
 		} else if (watch || (state.blockedDOFs & (State::DOF_X | State::DOF_Y | State::DOF_RZ)) || disk->radius > largest) {
 			owner = map.body_of_id[id] = new_body(int(id), rigid(state));
 			if (is_frozen(state)) mass = HUGE_VAL;

@@ -38,6 +38,7 @@ public:
 	void check() const;
 	void callPostLoad() override;
 	void action() override;
+	bool reads_all_bodies() const override { return false; }
 
 	void clear();
 	/// Mean (`variance` false) or variance over samples of one channel, bin by bin.

@@ -36,6 +36,7 @@ public:
 	}
 	void check() const;
 	void action() override;
+	bool reads_all_bodies() const override { return false; }
 
 	void clear();
 	FieldPlan plan() const;

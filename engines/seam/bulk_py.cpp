@@ -69,6 +69,8 @@ py::dict contacts(const yade::Scene& scene)
 	return table;
 }
 
+void set_clock(yade::Scene& scene, long iter, Real time) { scene.iter = iter, scene.time = time; }
+
 }  // namespace
 
 void bind_bulk()
@@ -78,6 +80,8 @@ void bind_bulk()
 		"Spheres of a scene (O._sceneObj) as arrays: id, clump, radius [m], mass [kg], shape (n,); position [m], velocity "
 		"[m/s],\n"
 		"spin [rad/s], shape (n, 3). A clump appears through its members.");
+	py::def("set_clock", set_clock, (py::arg("scene"), py::arg("iter"), py::arg("time")),
+		"Set O.iter and O.time [s] of a scene (O._sceneObj), and nothing else.");
 	py::def("contact_table", contacts, (py::arg("scene")),
 		"Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic "
 		"image),\n"

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstring>
 #include <sstream>
+#include <utility>
 
 #include "engines/seam/memory_probe.hpp"
 #include "engines/seam/yade.hpp"
@@ -234,8 +235,24 @@ private:
 		flag("Engine", "dead", engine, offsetof(yade::Engine, dead));
 		label("Engine", offsetof(yade::Engine, label));
 		pointer("Engine.scene", engine, offsetof(yade::Engine, scene), py::import("yade").attr("O").attr("_sceneObj"));
+		periodic_engine();
 		label("LawFunctor", offsetof(yade::LawFunctor, label));
 		label("IPhysFunctor", offsetof(yade::IPhysFunctor, label));
+	}
+
+	void periodic_engine()
+	{
+		py::object runner = make("PyRunner");
+		real("PyRunner", "virtPeriod", runner, offsetof(yade::PeriodicEngine, virtPeriod));
+		real("PyRunner", "realPeriod", runner, offsetof(yade::PeriodicEngine, realPeriod));
+		real("PyRunner", "virtLast", runner, offsetof(yade::PeriodicEngine, virtLast));
+		real("PyRunner", "realLast", runner, offsetof(yade::PeriodicEngine, realLast));
+		integer<long>("PyRunner", "iterPeriod", runner, offsetof(yade::PeriodicEngine, iterPeriod));
+		integer<long>("PyRunner", "iterLast", runner, offsetof(yade::PeriodicEngine, iterLast));
+		integer<long>("PyRunner", "nDo", runner, offsetof(yade::PeriodicEngine, nDo));
+		integer<long>("PyRunner", "nDone", runner, offsetof(yade::PeriodicEngine, nDone));
+		integer<long>("PyRunner", "firstIterRun", runner, offsetof(yade::PeriodicEngine, firstIterRun));
+		flag("PyRunner", "initRun", runner, offsetof(yade::PeriodicEngine, initRun));
 	}
 
 	void state()
@@ -255,6 +272,7 @@ private:
 		state.attr("ori") = eigen_.attr("Quaternion")(unit[3], unit[0], unit[1], unit[2]);
 		holds("State.ori", state, offsetof(yade::State, ori), raw(unit));
 		state.attr("blockedDOFs") = "xZ";
+		flag("State", "isDamped", state, offsetof(yade::State, isDamped));
 		holds("State.blockedDOFs", state, offsetof(yade::State, blockedDOFs),
 			raw(unsigned(yade::State::DOF_X | yade::State::DOF_RZ)));
 	}
@@ -265,6 +283,7 @@ private:
 		integer<int>("Body", "id", body, offsetof(yade::Body, id));
 		integer<int>("Body", "flags", body, offsetof(yade::Body, flags));
 		integer<int>("Body", "clumpId", body, offsetof(yade::Body, clumpId));
+		integer<int>("Body", "groupMask", body, offsetof(yade::Body, groupMask));
 		body.attr("mat") = material;
 		body.attr("shape") = shape;
 		body.attr("state") = state;
@@ -274,6 +293,8 @@ private:
 		empty_map("Body.intrs", body, offsetof(yade::Body, intrs));
 		empty_map("Clump.members", make("Clump"), offsetof(yade::Clump, members));
 		real("Sphere", "radius", shape, offsetof(yade::Sphere, radius));
+		real("FrictMat", "young", material, offsetof(yade::FrictMat, young));
+		real("FrictMat", "poisson", material, offsetof(yade::FrictMat, poisson));
 		real("FrictMat", "frictionAngle", material, offsetof(yade::FrictMat, frictionAngle));
 		real("FrictMat", "density", material, offsetof(yade::FrictMat, density));
 	}
@@ -331,6 +352,7 @@ private:
 		py::object scene = make("Scene");  // a scene of our own: the user's is not touched
 		real("Scene", "dt", scene, offsetof(yade::Scene, dt));
 		real("Scene", "time", scene, offsetof(yade::Scene, time));
+		real("Scene", "stopAtTime", scene, offsetof(yade::Scene, stopAtTime));
 		integer<long>("Scene", "iter", scene, offsetof(yade::Scene, iter));
 		integer<long>("Scene", "stopAtIter", scene, offsetof(yade::Scene, stopAtIter));
 		integer<int>("Scene", "subStep", scene, offsetof(yade::Scene, subStep));
@@ -348,6 +370,12 @@ private:
 		const Real edges[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
 		const py::object matrix = eigen_.attr("Matrix3")(edges[0], 0, 0, 0, edges[4], 0, 0, 0, edges[8]);
 		attribute("Cell", "hSize", periodic, offsetof(yade::Cell, hSize), matrix, edges);
+		for (const auto& [name, offset] : { std::pair("velGrad", offsetof(yade::Cell, velGrad)),
+				 std::pair("nextVelGrad", offsetof(yade::Cell, nextVelGrad)) }) {
+			const Real rates[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
+			attribute(
+				"Cell", name, periodic, offset, eigen_.attr("Matrix3")(rates[0], 0, 0, 0, rates[4], 0, 0, 0, rates[8]), rates);
+		}
 	}
 	void points_to(const string& member, const py::object& object, std::size_t offset, const string& vtable)
 	{
@@ -389,6 +417,20 @@ private:
 		++facts_;
 		if (!found || std::memcmp(found->data(), sentinel.data(), sizeof *found) != 0)
 			refuse("a force added to Scene.forces was not found in its arrays");
+		sync_count(container, start);
+	}
+	/// The counter must rise by one where something was added, and stay where nothing was.
+	void sync_count(yade::ForceContainer* container, Address start)
+	{
+		const Address place = start + declared("ForceContainer.syncCount", offsetof(yade::ForceContainer, syncCount));
+		const auto counted = [&] { return probe_.read<long>(place).value_or(-1); };
+		const long before = counted();
+		container->sync();
+		const long after = counted();
+		container->sync();
+		++facts_;
+		if (after != before + 1 || counted() != after) refuse("ForceContainer.syncCount does not count at byte 288");
+		container->reset(0);
 	}
 
 	/// Slot by slot, the symbols behind an object's vptr.

@@ -74,6 +74,9 @@ inline const char* base_name(const yade::FrictPhys*) { return "FrictPhys"; }
 class Stateful {
 public:
 	virtual ~Stateful() = default;
+	/// False if the engine reads no bodies but those that it names, and changes no others. Where none of O.engines reads them all,
+	/// GrainLoop need not write every grain into YADE's bodies at every step.
+	virtual bool reads_all_bodies() const { return true; }
 	virtual std::string attribute_names() const = 0;
 	virtual std::string packed() const = 0;
 	virtual void unpack(const std::string& bytes) = 0;
@@ -133,7 +136,10 @@ public:
 
 	void pySetAttr(const std::string& key, const boost::python::object& value) override
 	{
-		if (!set(key, value)) Base::pySetAttr(key, value);
+		if (set(key, value))
+			self().assigned(key);
+		else
+			Base::pySetAttr(key, value);
 	}
 
 	/// Sets one of our own attributes; false if there is none of that name.
@@ -157,6 +163,8 @@ public:
 	}
 
 	void check() const {}
+	/// Hears that Python has set the attribute of that name. What it throws takes the new value back.
+	void assigned(const std::string&) {}
 
 	template <class Archive>
 	void serialize(Archive& archive, unsigned)
@@ -212,12 +220,13 @@ py::object construct(const py::tuple& arguments, const py::dict& keywords)
 
 /// A property whose new value is taken back if the object's check refuses it.
 template <class Self, class Value>
-void set_checked(Self& object, Value Self::*member, const Value& value)
+void set_checked(Self& object, const std::string& name, Value Self::*member, const Value& value)
 {
 	const Value before = object.*member;
 	object.*member = value;
 	try {
 		object.check();
+		object.assigned(name);
 	} catch (...) {
 		object.*member = before;
 		throw;
@@ -235,8 +244,8 @@ auto bind(const char* documentation)
 	Self::attributes([&](const char* name, auto member, const char* doc) {
 		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;
 		const auto get = [member](const Self& object) -> Value { return object.*member; };
-		const auto set = [member](Self& object, const Value& value) {
-			set_checked(object, static_cast<Value Self::*>(member), value);
+		const auto set = [member, name](Self& object, const Value& value) {
+			set_checked(object, name, static_cast<Value Self::*>(member), value);
 		};
 		cls.add_property(name, py::make_function(get, py::default_call_policies(), boost::mpl::vector<Value, const Self&>()),
 			py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Self&, const Value&>()), doc);

@@ -10,11 +10,13 @@
 #include <core/ForceContainer.hpp>
 #include <core/Functor.hpp>
 #include <core/Interaction.hpp>
+#include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <core/State.hpp>
 #include <pkg/common/Dispatching.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
+#include <pkg/common/PeriodicEngines.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/dem/ScGeom.hpp>
 

@@ -15,6 +15,12 @@
 
 #include "engines/base/real.hpp"
 
+template <class T>
+class Singleton {
+public:
+	static T& instance();
+};
+
 namespace yade {
 
 using boost::dynamic_pointer_cast;
@@ -77,6 +83,23 @@ public:
 	std::string label;
 };
 
+/// An engine that acts from time to time: every so many steps, or so much model or wall time.
+class PeriodicEngine : public Engine {
+public:
+	~PeriodicEngine() override;
+	bool isActivated() override;
+
+	Real virtPeriod;  ///< [s] of the model
+	Real realPeriod;  ///< [s] of the clock
+	long iterPeriod;
+	long nDo;
+	bool initRun;
+	long firstIterRun;
+	Real virtLast, realLast;
+	long iterLast;
+	long nDone;
+};
+
 /// Classes that dispatchers tell apart by an index.
 class Indexable {
 public:
@@ -103,8 +126,8 @@ public:
 };
 
 class FrictMat : public Material {
-	char elastic_[16];  // young, poisson
 public:
+	Real young, poisson;
 	Real frictionAngle;
 };
 
@@ -253,11 +276,20 @@ public:
 
 /// Forces and torques on bodies, one set of arrays a thread.
 class alignas(8) ForceContainer {
+	char arrays_[288];
+
 public:
+	long syncCount;  ///< how often the threads' arrays were added up: `sync` counts only where something was added since
+
 	void addForce(Body::id_t id, const Vector3r& force);
 	void addTorque(Body::id_t id, const Vector3r& torque);
 	const Vector3r getForceSingle(Body::id_t id);  ///< sum over threads, without synchronising
 	const Vector3r getTorqueSingle(Body::id_t id);
+	const Vector3r& getForce(Body::id_t id);  ///< after `sync`: sum over threads and the permanent force
+	const Vector3r& getTorque(Body::id_t id);
+	void sync();
+	void reset(long iter, bool resetAll = false);  ///< permanent forces stay
+	bool getPermForceUsed() const;
 };
 
 class InteractionContainer;
@@ -268,6 +300,13 @@ class Cell : public Serializable {
 
 public:
 	Eigen::Matrix<Real, 3, 3> hSize;  ///< columns are the edges
+
+private:
+	char previous_size_[72];
+
+public:
+	Eigen::Matrix<Real, 3, 3> velGrad;      ///< of the step
+	Eigen::Matrix<Real, 3, 3> nextVelGrad;  ///< of the next one: what Python's O.cell.velGrad sets
 };
 
 class Scene : public Serializable {
@@ -277,7 +316,7 @@ public:
 	ForceContainer forces;
 
 private:
-	char internals_[400];
+	char internals_[112];
 
 public:
 	Real dt;
@@ -308,6 +347,12 @@ private:
 
 public:
 	shared_ptr<Cell> cell;
+};
+
+/// The program's one simulation; `Singleton<Omega>::instance()` is it.
+class Omega {
+public:
+	bool isRunning();  ///< false in the last step before O.pause() takes hold, and in O.step()
 };
 
 /// What dispatchers call for a pair of types.

@@ -1,0 +1,180 @@
+"""Whoever else looks at bodies or writes into them while GrainLoop runs: they see the truth, and are heard at once."""
+
+import disks
+import numpy as np
+import pytest
+from graindrive import engines, grain_loop
+from yade import O, wrapper
+
+
+def bed():
+    """Nine free disks that fall towards three frozen ones; return ids (frozen, free)."""
+    disks.new_scene(dt=1e-3)
+    frozen = [disks.disk(x, 0, frozen=True) for x in (0.0, 1.0, 2.0)]
+    free = [disks.disk(1.1 * k, 3.0) for k in range(9)]
+    disks.loop(disks.hertz(gamma_n=50, gamma_t=50), gravity=(0, -1))
+    return frozen, free
+
+
+def put_in(engine):
+    O.engines = O.engines[:-1] + [engine, O.engines[-1]]
+
+
+def both_loops(build, steps=300):
+    seen = []
+    for loop in ("yade", "grain"):
+        build()
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(steps)
+        seen.append(disks.everything())
+    return seen
+
+
+def assert_same_motion(seen, tolerance=1e-11):
+    yade, grain = seen
+    np.testing.assert_allclose(grain[:, 0:6], yade[:, 0:6], rtol=0, atol=tolerance)
+    np.testing.assert_allclose(grain[:, 10:13], yade[:, 10:13], rtol=0, atol=tolerance)
+
+
+def test_a_recorder_sees_free_disks_where_they_are():
+    seen = []
+    for loop in ("yade", "grain"):
+        _, free = bed()
+        heights = O.tags["heights"] = ""
+        put_in(
+            wrapper.PyRunner(
+                command=f"O.tags['heights'] += repr(O.bodies[{free[0]}].state.pos[1]) + ' '", iterPeriod=7, initRun=True
+            )
+        )
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(100)
+        heights = [float(word) for word in O.tags["heights"].split()]
+        seen.append(heights)
+    assert len(seen[1]) >= 14 and len(set(seen[1])) == len(seen[1])
+    np.testing.assert_allclose(seen[1], seen[0], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        "s.vel = (0, 2, 0)",
+        "s.angVel = (0, 0, 3); s.angMom = s.inertia[2] * s.angVel",
+        "s.pos = (50, 7, 0)",
+        "s.mass = 3 * s.mass; s.inertia = 3 * s.inertia",
+        "s.blockedDOFs = 'xyzXYZ'; s.vel = (0, 0, 0)",
+    ],
+)
+def test_what_a_runner_writes_into_a_free_disk_acts_from_that_step_on(what):
+    def build():
+        _, free = bed()
+        put_in(wrapper.PyRunner(command=f"s = O.bodies[{free[4]}].state; {what}", firstIterRun=150, nDo=1))
+
+    assert_same_motion(both_loops(build))
+
+
+def test_what_python_writes_between_two_runs_is_heard():
+    seen = []
+    for loop in ("yade", "grain"):
+        _, free = bed()
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(100)
+        O.bodies[free[0]].state.vel = (1, 0, 0)
+        O.bodies[free[1]].state.pos = (-40, 5, 0)
+        disks.run(100)
+        seen.append(disks.everything())
+    assert_same_motion(seen)
+
+
+def test_a_frozen_disk_set_in_motion_moves_from_that_step_on():
+    def build():
+        frozen, _ = bed()
+        put_in(wrapper.PyRunner(command=f"O.bodies[{frozen[1]}].state.vel = (0, 1, 0)", firstIterRun=150, nDo=1))
+
+    seen = both_loops(build, steps=160)
+    assert_same_motion(seen)
+    assert seen[1][1][1] == pytest.approx(10 * 1e-3, rel=1e-9)  # ten steps, not a hundred later
+
+
+def test_a_frozen_disk_put_elsewhere_is_met_there():
+    def build():
+        frozen, free = bed()
+        put_in(wrapper.PyRunner(command=f"O.bodies[{frozen[0]}].state.pos = (8.8, 1.9, 0)", firstIterRun=150, nDo=1))
+
+    assert_same_motion(both_loops(build, steps=600))
+
+
+def test_a_kinematic_engine_of_yades_moves_frozen_disks():
+    def build():
+        frozen, _ = bed()
+        put_in(wrapper.TranslationEngine(ids=frozen, translationAxis=(0, 1, 0), velocity=0.5))
+
+    assert_same_motion(both_loops(build, steps=1500), tolerance=1e-9)  # with impacts
+
+
+def test_one_step_shows_all_disks():
+    _, free = bed()
+    grain_loop.use_grain_loop()
+    O.step()
+    O.step()
+    assert O.bodies[free[0]].state.vel[1] == pytest.approx(-2e-3, rel=1e-9)
+
+
+def test_a_body_that_python_turns_is_turned():
+    disks.new_scene(dt=1e-3)
+    clump, members = disks.clump([(-0.3, 0), (0.3, 0)])
+    disks.disk(10, 10)
+    disks.loop()
+    loop = grain_loop.use_grain_loop()
+    disks.run(1)
+    O.bodies[clump].state.ori = O.bodies[clump].state.ori * quarter_turn()
+    disks.run(1)
+    row = list(loop.ids).index(members[1])
+    np.testing.assert_allclose(loop.positions[row], (0, 0.3), rtol=0, atol=1e-12)
+
+
+def quarter_turn():
+    from yade.minieigenHP import Quaternion, Vector3
+
+    return Quaternion(Vector3(0, 0, 1), np.pi / 2)
+
+
+@pytest.mark.parametrize(
+    "engine", [wrapper.GlobalStiffnessTimeStepper, wrapper.ForceRecorder, wrapper.ServoPIDController]
+)
+def test_an_engine_that_needs_interactions_is_refused_by_name(engine):
+    bed()
+    put_in(engine())
+    before = [type(e).__name__ for e in O.engines]
+    with pytest.raises(RuntimeError, match=f"does not know what {engine.__name__} needs"):
+        grain_loop.use_grain_loop()
+    assert [type(e).__name__ for e in O.engines] == before
+
+
+def test_a_trusted_engine_may_stand():
+    bed()
+    put_in(wrapper.ServoPIDController(dead=False))
+    grain_loop.use_grain_loop(trusted=["ServoPIDController"])
+    assert type(O.engines[0]).__name__ == "ServoPIDController"
+
+
+def test_an_engine_added_later_is_looked_at():
+    bed()
+    grain_loop.use_grain_loop()
+    disks.run(5)
+    O.engines = [wrapper.GlobalStiffnessTimeStepper()] + O.engines
+    with pytest.raises(RuntimeError, match="does not know what GlobalStiffnessTimeStepper needs"):
+        O.engines[-1]()
+
+
+def test_measures_make_nobody_write_all_bodies():
+    """Graindrive's own engines ask the loop: bodies in between stay as they were shown last, and nothing is paid for them."""
+    _, free = bed()
+    put_in(engines.ContactForceBinner(body=free[0]))
+    loop = grain_loop.use_grain_loop()
+    disks.run(2)
+    shown = O.bodies[free[3]].state.pos[1]
+    height = loop.positions[list(loop.ids).index(free[3])][1]
+    assert shown == height

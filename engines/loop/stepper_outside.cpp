@@ -1,0 +1,101 @@
+/// What comes from outside while a run goes on: forces on grains and bodies, other settings, grains that were moved.
+///
+/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "engines/loop/guards.hpp"
+#include "engines/loop/stepper.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+bool same(const ContactLaw& one, const ContactLaw& other)
+{
+	if (one.index() != other.index()) return false;
+	return std::visit(
+		[&](const auto& law) {
+			return std::memcmp(&law, &std::get<std::decay_t<decltype(law)>>(other), sizeof law) == 0;  // numbers alone
+		},
+		one);
+}
+
+}  // namespace
+
+/// One free grain after the sweep; `surface_force` is torque over radius [N].
+void Stepper::kick_grain(std::uint32_t at, double force_x, double force_y, double surface_force)
+{
+	GrainRow& row = rows[at];
+	const double response = row.inverse_mass * data.kick, kick_x = force_x * response, kick_y = force_y * response;
+	row.vx += kick_x;
+	row.vy += kick_y;
+	row.x += kick_x * data.drift;
+	row.y += kick_y * data.drift;
+	row.surface_speed += surface_force * response * data.spin_response;
+	const std::uint32_t block = party_of(at);
+	travelled[block] += std::hypot(kick_x, kick_y) * data.drift;  // on top of what the sweep has counted
+	selection_due |= travelled[block] > allowed[block];
+}
+
+void Stepper::push_grains()
+{
+	for (const Push& push : pushes) {
+		const std::uint32_t at = row_of[push.grain];
+		kick_grain(at, push.x, push.y, push.torque / rows[at].radius);
+	}
+}
+
+void Stepper::set_pushes(std::vector<Push> on_grains)
+{
+	for (const Push& push : on_grains)
+		if (push.grain >= n_grains || scene.grains[push.grain].body != free_grain)
+			throw std::invalid_argument(sentence("a push acts on a free grain; got grain ", push.grain));
+	pushes = std::move(on_grains);
+}
+
+/// Springs of the pairs that were computed early go back to where they were, so that those can be computed again.
+void Stepper::take_back_body_forces()
+{
+	if (!body_forces_known) return;
+	pairs.put_back_early_slips();
+	for (WallTouch& touch : wall_touches) touch.slip = touch.slip_before;
+	body_forces_known = false;
+}
+
+void Stepper::put(std::size_t index, const Grain& grain)
+{
+	GrainRow& row = rows[row_of[index]];
+	const bool elsewhere = row.x != grain.x || row.y != grain.y;
+	row.x = grain.x, row.y = grain.y, row.vx = grain.vx, row.vy = grain.vy;
+	row.surface_speed = grain.spin * grain.radius;
+	if (!elsewhere) return;
+	searched_at.assign(searched_at.size(), HUGE_VAL);  // whoever was near is no guide any more
+	moved_near_walls = HUGE_VAL;
+	selection_due = true;
+}
+
+void Stepper::change(const Scene& wanted)
+{
+	Scene changed = scene;
+	changed.law = wanted.law, changed.friction = wanted.friction, changed.precision = wanted.precision;
+	changed.gravity_x = wanted.gravity_x, changed.gravity_y = wanted.gravity_y;
+	changed.threads = wanted.threads, changed.skin = wanted.skin;
+	const bool other_physics = !same(changed.law, scene.law) || changed.friction != scene.friction ||
+	                           changed.gravity_x != scene.gravity_x || changed.gravity_y != scene.gravity_y;
+	if (books && other_physics)
+		throw std::invalid_argument(
+			"law, friction and gravity must stay while energy is tracked; switch trackEnergy off and on again");
+	check_scene(changed);
+	check_walls(changed);
+	take_back_body_forces();
+	if (selections > 0) pairs.keep_slips();
+	const bool other_springs = !changed.friction || changed.law.index() != scene.law.index();
+	scene = std::move(changed);
+	if (other_springs) forget_springs();
+	set_up_kernels();
+	if (selections > 0) lay_out_pairs();
+}
+
+}  // namespace graindrive::loop
