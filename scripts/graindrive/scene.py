@@ -161,6 +161,7 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
     yade_loop(material, gravity, between)
     if loop == "grain":
         grain_loop.use_grain_loop(
+            periods=(O.cell.size[0], 0) if O.periodic else None,  # y of the cell is long on purpose, see `start`
             precision=precision,
             threads=threads or min(O.numThreads, 1 + len(O.bodies) // GRAINS_PER_THREAD),
             largestOverlap=largest_overlap,
