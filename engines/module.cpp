@@ -5,6 +5,7 @@
 
 namespace graindrive {
 void bind_bulk();
+void bind_clumps();
 void bind_shapes();
 void bind_packing();
 void bind_functors();
@@ -20,6 +21,7 @@ static void register_everything()
 	graindrive::seam::bind_layout();
 	graindrive::seam::prove_layout({});
 	graindrive::bind_bulk();
+	graindrive::bind_clumps();
 	graindrive::bind_shapes();
 	graindrive::bind_packing();
 	graindrive::bind_functors();

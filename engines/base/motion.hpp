@@ -18,6 +18,9 @@ struct Oscillation {
 	Real phase;      ///< phi [rad]
 	Form form;
 
+	/// Largest displacement from the centre of the motion [m].
+	Real reach() const { return std::abs(form == Form::displacement ? amplitude : amplitude * period / (2 * pi)); }
+
 	Real displacement(Real t) const
 	{
 		const Real angle = 2 * pi * t / period + phase;

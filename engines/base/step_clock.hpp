@@ -4,10 +4,11 @@
 
 namespace graindrive {
 
-/// Time since the first reading, as (steps since the anchor) x dt + (time at the anchor).
+/// Time over which the clock was read, as (steps since the anchor) x dt + (time at the anchor).
 ///
 /// O.time sums dt and is off by ~1e-12 of itself after ten million steps; this product is exact to round-off. The anchor moves
-/// when dt changes and when the step count jumps back (O.resetTime): time then goes on from the end of the last step.
+/// when dt changes, and when the step count jumps: back by O.resetTime, or on over steps without a reading, which do not count.
+/// Time then goes on from the end of the last step.
 struct StepClock {
 	long anchor_step = -1;  ///< step of the anchor; -1 before the first reading
 	Real anchor_time = 0;   ///< time at the anchor [s]
@@ -19,9 +20,9 @@ struct StepClock {
 	/// Time at `step` [s]; 0 at the first reading.
 	Real at(long step, Real present_dt)
 	{
-		const bool jumped_back = step < last_step;
-		if (!started() || present_dt != dt || jumped_back) {
-			const Real reached = started() ? anchor_time + Real((jumped_back ? last_step + 1 : step) - anchor_step) * dt : 0;
+		const bool jumped = step != last_step && step != last_step + 1;
+		if (!started() || present_dt != dt || jumped) {
+			const Real reached = started() ? anchor_time + Real((jumped ? last_step + 1 : step) - anchor_step) * dt : 0;
 			anchor_step = step;
 			anchor_time = reached;
 			dt = present_dt;

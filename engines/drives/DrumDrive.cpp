@@ -6,28 +6,64 @@ namespace graindrive {
 const char* const DrumDrive::documentation =
 	"Turns a set of bodies rigidly about an axis through `axisPoint` (the drum of Oba, Otsuki 2025).\n\n"
 	"X_i(t) = axisPoint + R(Omega t) (X_i(0) - axisPoint), spin Omega. Each body gets the velocity of the chord that takes it\n"
-	"there, so that radii and angles keep the closed form to round-off. Place it after the contacts and before the integrator.\n"
+	"there, so that radii and angles keep the closed form to round-off. Where axisPoint or angularVelocity are assigned in "
+	"mid-run,\n"
+	"and after a rest (dead=True), it goes on from the present places. Place it after the contacts and before the integrator.\n"
 	"Raises ValueError for non-finite values.";
+
+namespace {
+
+constexpr std::size_t numbers_before_ids = 6;  // in `settings`: axis point and angular velocity
+
+std::string ids_of(const std::vector<int>& bodies)
+{
+	std::string ids;
+	for (const int id : bodies) ids += (ids.empty() ? "" : ", ") + std::to_string(id);
+	return ids.empty() ? "none" : ids;
+}
+
+}  // namespace
 
 void DrumDrive::check() const
 {
 	require(axisPoint.allFinite(), "DrumDrive.axisPoint must be finite", axisPoint.transpose());
 	require(angularVelocity.allFinite(), "DrumDrive.angularVelocity must be finite", angularVelocity.transpose());
-	require(origins.empty() || origins.size() == bodies.size(),
-		"DrumDrive.bodies cannot change once the drum turns; make a new DrumDrive", bodies.size());
+	const auto turning = leg.begin() + std::min(leg.size(), numbers_before_ids);
+	require(leg.empty() || (origins.size() == bodies.size() && std::equal(turning, leg.end(), bodies.begin(), bodies.end())),
+		"DrumDrive.bodies cannot change once the drum turns; make a new DrumDrive", ids_of(bodies));
 }
 
-void DrumDrive::take_origins()
+std::vector<Real> DrumDrive::settings() const
+{
+	std::vector<Real> all(axisPoint.data(), axisPoint.data() + 3);
+	all.insert(all.end(), angularVelocity.data(), angularVelocity.data() + 3);
+	all.insert(all.end(), bodies.begin(), bodies.end());
+	return all;
+}
+
+/// True if something else has moved one of the bodies.
+bool DrumDrive::is_elsewhere() const
+{
+	const Turn now = turn(leg_now());
+	for (std::size_t i = 0; i < bodies.size(); ++i) {
+		const Vector3r offset = state_of(bodies[i]).pos - axisPoint - now * origins[i];
+		if (displaced(offset.norm(), 0, axisPoint.norm() + origins[i].norm())) return true;
+	}
+	return false;
+}
+
+void DrumDrive::begin_leg()
 {
 	origins.clear();
 	for (const int id : bodies) origins.push_back(state_of(id).pos - axisPoint);
+	Drive::begin_leg(settings());
 }
 
 /// Sends one body along its chord; answers the grains' force on it, with the torque about the axis point.
-Wrench DrumDrive::move(std::size_t index, const Eigen::Matrix<Real, 3, 3>& turn)
+Wrench DrumDrive::move(std::size_t index, const Turn& turn)
 {
 	yade::State& state = state_of(bodies[index]);
-	Wrench grains = wrench_on(bodies[index]);
+	Wrench grains = grains_[index];
 	const Vector3r velocity = (axisPoint + turn * origins[index] - state.pos) / scene->dt;
 	impose(state, yade::State::DOF_ALL, velocity, angularVelocity, grains);
 	grains.torque += (state.pos - axisPoint).cross(grains.force);
@@ -36,11 +72,13 @@ Wrench DrumDrive::move(std::size_t index, const Eigen::Matrix<Real, 3, 3>& turn)
 
 void DrumDrive::action()
 {
-	if (begins()) take_origins();
-	const Eigen::Matrix<Real, 3, 3> turn = rotation(angularVelocity, end_of_step()).toRotationMatrix();
+	grains_.clear();
+	for (const int id : bodies) state_of(id), grains_.push_back(wrench_on(id));
+	if (leg_ends(settings()) || is_elsewhere()) begin_leg();
+	const Turn at_end = turn(leg_end());
 	Wrench sum;
 	for (std::size_t i = 0; i < bodies.size(); ++i) {
-		const Wrench one = move(i, turn);
+		const Wrench one = move(i, at_end);
 		sum.force += one.force;
 		sum.torque += one.torque;
 	}

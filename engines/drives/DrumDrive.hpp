@@ -15,7 +15,7 @@ public:
 		visit("bodies", &DrumDrive::bodies, "ids of the bodies that turn");
 		visit("axisPoint", &DrumDrive::axisPoint, "a point on the axis [m]");
 		visit("angularVelocity", &DrumDrive::angularVelocity, "Omega along the axis [rad/s]");
-		visit("origins", &DrumDrive::origins, "positions at the start, from axisPoint [m]; taken at the first step");
+		visit("origins", &DrumDrive::origins, "positions where the present leg began, from axisPoint [m]");
 		common_attributes(visit);
 	}
 	void check() const;
@@ -26,8 +26,15 @@ public:
 	std::vector<Vector3r> origins;
 
 private:
-	void take_origins();
-	Wrench move(std::size_t index, const Eigen::Matrix<Real, 3, 3>& turn);
+	using Turn = Eigen::Matrix<Real, 3, 3>;
+
+	std::vector<Real> settings() const;
+	Turn turn(Real t) const { return rotation(angularVelocity, t).toRotationMatrix(); }
+	bool is_elsewhere() const;
+	void begin_leg();
+	Wrench move(std::size_t index, const Turn& turn);
+
+	std::vector<Wrench> grains_;
 };
 
 }  // namespace graindrive

@@ -8,7 +8,11 @@ const char* const OscillationDrive::documentation =
 	"form='displacement': x(t) = x0 + A [sin(2 pi t/T + phi) - sin phi]\n"
 	"form='velocity':     v(t) = A sin(2 pi t/T + phi), x its integral\n\n"
 	"Both are readings of Tripura et al., whose text writes the velocity and uses the displacement. t starts at the drive's\n"
-	"first step. Place it after the contacts and before the integrator. Raises ValueError for a period <= 0, a negative or\n"
+	"first step. Where amplitude, period, form, direction or body are assigned in mid-run, the motion goes on from the present\n"
+	"place with the present angle 2 pi t/T + phi, or with the `phase` that is assigned: then x0, t and phi are those of that "
+	"step.\n"
+	"It also goes on from the present place after a rest (dead=True). Place it after the contacts and before the integrator. "
+	"Raises ValueError for a period <= 0, a negative or\n"
 	"non-finite amplitude, an unknown form, or a direction that is not an axis.";
 
 void OscillationDrive::check() const
@@ -32,21 +36,46 @@ int OscillationDrive::axis() const
 	return index;
 }
 
+namespace {
+
+constexpr std::size_t period_setting = 1;  // its place in `settings`
+
+}  // namespace
+
+std::vector<Real> OscillationDrive::settings() const
+{
+	return { Real(body), period, amplitude, Real(axis()), direction[axis()] > 0 ? 1.0 : -1.0, form == "velocity" ? 1.0 : 0.0 };
+}
+
 Oscillation OscillationDrive::motion() const
 {
 	const bool by_displacement = form == "displacement";
 	const Real sign = direction[axis()] > 0 ? 1 : -1;
-	return { sign * amplitude, period, phase, by_displacement ? Oscillation::Form::displacement : Oscillation::Form::velocity };
+	return { sign * amplitude, period, legPhase,
+		by_displacement ? Oscillation::Form::displacement : Oscillation::Form::velocity };
+}
+
+/// The angle runs on with the period that the leg before had.
+void OscillationDrive::begin_leg(Real place)
+{
+	legPhase = first_leg() || phaseAssigned ? phase : legPhase + 2 * pi * leg_now() / leg[period_setting];
+	phaseAssigned = false;
+	origin = place;
+	give_back(yade::State::DOF_X << axis());
+	BodyDrive::begin_leg(settings());
 }
 
 void OscillationDrive::action()
 {
 	yade::State& state = driven_state();
-	const int along = axis();
-	if (begins()) origin = state.pos[along];
+	feel_grains();
+	const Real& place = state.pos[axis()];
+	const bool ends = leg_ends(settings()) || phaseAssigned;
+	if (ends || displaced(place, origin + motion().displacement(leg_now()), std::abs(origin) + motion().reach()))
+		begin_leg(place);
 	Vector3r velocity = Vector3r::Zero();
-	velocity[along] = (origin + motion().displacement(end_of_step()) - state.pos[along]) / scene->dt;
-	impose(state, yade::State::DOF_X << along, velocity, Vector3r::Zero());
+	velocity[axis()] = (origin + motion().displacement(leg_end()) - place) / scene->dt;
+	impose(state, yade::State::DOF_X << axis(), velocity, Vector3r::Zero());
 }
 
 }  // namespace graindrive

@@ -14,22 +14,28 @@ public:
 	{
 		visit("amplitude", &OscillationDrive::amplitude, "A: of displacement [m], or of velocity [m/s] with form='velocity'");
 		visit("period", &OscillationDrive::period, "T [s]");
-		visit("phase", &OscillationDrive::phase, "phi at the start [rad]");
+		visit("phase", &OscillationDrive::phase, "phi at the start [rad]; assigned later, the phase from then on");
 		visit("direction", &OscillationDrive::direction, "axis of the motion: along x, y or z");
 		visit("form", &OscillationDrive::form, "'displacement' or 'velocity': which of the two is A sin(2 pi t/T + phi)");
-		visit("origin", &OscillationDrive::origin, "coordinate at the start [m]; taken from the body at the first step");
+		visit("origin", &OscillationDrive::origin, "coordinate where the present leg began [m]; taken from the body");
+		visit("legPhase", &OscillationDrive::legPhase, "phase where it began [rad]");
+		visit("phaseAssigned", &OscillationDrive::phaseAssigned, "true if `phase` was assigned since the last step");
 		common_attributes(visit);
 	}
 	void check() const;
 	void action() override;
+	void assigned(const std::string& name) { phaseAssigned = phaseAssigned || name == "phase"; }
 
-	Real amplitude = 0, period = 1, phase = 0, origin = 0;
+	Real amplitude = 0, period = 1, phase = 0, origin = 0, legPhase = 0;
+	bool phaseAssigned = false;
 	Vector3r direction = Vector3r::UnitX();
 	std::string form = "displacement";
 
 private:
 	int axis() const;
+	std::vector<Real> settings() const;
 	Oscillation motion() const;
+	void begin_leg(Real place);
 };
 
 }  // namespace graindrive

@@ -16,9 +16,8 @@ public:
 		visit("spin", &SpinTranslateDrive::spin, "omega [rad/s]");
 		visit("dofs", &SpinTranslateDrive::dofs,
 			"driven degrees of freedom: letters of 'xyzXYZ' (capitals are rotations); the others stay free");
-		visit("origin", &SpinTranslateDrive::origin, "position at the start [m]; taken from the body at the first step");
-		visit("originOrientation", &SpinTranslateDrive::originOrientation,
-			"orientation at the start; taken from the body at the first step");
+		visit("origin", &SpinTranslateDrive::origin, "position where the present leg began [m]; taken from the body");
+		visit("originOrientation", &SpinTranslateDrive::originOrientation, "orientation where it began; taken from the body");
 		common_attributes(visit);
 	}
 	void check() const;
@@ -30,6 +29,11 @@ public:
 
 private:
 	unsigned driven_dofs() const;
+	std::vector<Real> settings() const;
+	Vector3r place(Real t) const { return origin + velocity * t; }
+	Quaternionr orientation(Real t) const { return rotation(spin, t) * originOrientation; }
+	bool is_elsewhere(const yade::State& state) const;
+	void begin_leg(const yade::State& state);
 };
 
 }  // namespace graindrive

@@ -2,6 +2,7 @@
 #include "engines/drives/DrumDrive.hpp"
 #include "engines/drives/OscillationDrive.hpp"
 #include "engines/drives/SpinTranslateDrive.hpp"
+#include "engines/seam/bind.hpp"
 
 namespace graindrive {
 

@@ -58,6 +58,7 @@ private:
 		phys.shearForce = answer.tangential_force2;
 		phys.slip = answer.slip;
 		phys.slipping = answer.slipping;
+		phys.leverLoss = laws::lever_loss(arm, geom.penetrationDepth);
 		const Vector3r force2 = answer.normal_force2 + answer.tangential_force2;
 		scene.forces.addForce(id1, -force2);
 		scene.forces.addForce(id2, force2);

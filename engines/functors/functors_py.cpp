@@ -1,6 +1,7 @@
 /// Python bindings of the functors and of what a contact carries.
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 #include "engines/functors/contact_law_functors.hpp"
+#include "engines/seam/bind.hpp"
 
 namespace graindrive {
 

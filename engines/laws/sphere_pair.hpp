@@ -20,6 +20,9 @@ struct SpherePair {
 /// delta F_t of the overlap. `contact_point`: at the middle of the overlap, which conserves it to round-off.
 enum class LeverArm { radius, contact_point };
 
+/// By how much the tangential force's lever is shorter than the radius [m].
+inline Real lever_loss(LeverArm lever, Real overlap) { return lever == LeverArm::contact_point ? overlap / 2 : 0; }
+
 /// Forces and torques on the pair.
 struct PairResponse {
 	Vector3r normal_force2;      ///< on grain 2, F_n n; grain 1 gets the opposite [N]
@@ -44,7 +47,7 @@ template <class Law>
 PairResponse respond(const Law& law, const SpherePair& pair, const Vector3r& slip, Real dt, LeverArm lever = LeverArm::radius)
 {
 	const Vector3r& n = pair.normal;
-	const Real shorten = lever == LeverArm::contact_point ? pair.overlap / 2 : 0;
+	const Real shorten = lever_loss(lever, pair.overlap);
 	const Real arm1 = pair.radius1 - shorten, arm2 = pair.radius2 - shorten;
 	const Vector3r approach = pair.velocity1 - pair.velocity2;
 	const Real closing = approach.dot(n);

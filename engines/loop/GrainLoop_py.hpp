@@ -3,6 +3,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/loop/GrainLoop.hpp"
+#include "engines/seam/bind.hpp"
 #include "engines/seam/numpy_array.hpp"
 
 namespace graindrive {

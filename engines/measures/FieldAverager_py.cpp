@@ -2,6 +2,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/measures/FieldAverager.hpp"
+#include "engines/seam/bind.hpp"
 #include "engines/seam/numpy_array.hpp"
 
 namespace graindrive {

@@ -2,6 +2,7 @@
 #include <boost/python/numpy.hpp>
 
 #include "engines/measures/ContactForceBinner.hpp"
+#include "engines/seam/bind.hpp"
 
 namespace graindrive {
 namespace {

@@ -15,11 +15,14 @@ public:
 		visit("effectiveMass", &ContactPhys::effectiveMass,
 			"m_i m_j / (m_i + m_j); a frozen partner counts as infinitely heavy [kg]");
 		visit("slip", &ContactPhys::slip, "tangential spring s [m], of body 1 against body 2");
+		visit("leverLoss", &ContactPhys::leverLoss,
+			"by how much the tangential force's lever was shorter than the radius in the last step [m]: 0, or half the overlap");
 		visit("slipping", &ContactPhys::slipping, "true if the tangential force was cut at Coulomb's bound in the last step");
 	}
 
 	Real effectiveRadius = 0;
 	Real effectiveMass = 0;
+	Real leverLoss = 0;
 	Vector3r slip = Vector3r::Zero();
 	bool slipping = false;
 };

@@ -292,6 +292,7 @@ private:
 		pointer("Body.state", body, offsetof(yade::Body, state), state);
 		empty_map("Body.intrs", body, offsetof(yade::Body, intrs));
 		empty_map("Clump.members", make("Clump"), offsetof(yade::Clump, members));
+		place_in_clump();
 		real("Sphere", "radius", shape, offsetof(yade::Sphere, radius));
 		real("FrictMat", "young", material, offsetof(yade::FrictMat, young));
 		real("FrictMat", "poisson", material, offsetof(yade::FrictMat, poisson));
@@ -314,6 +315,21 @@ private:
 		std::size_t found = 24;
 		while (found + 48 <= memory.size() && !is_map(found)) found += 8;
 		misplaced(member, at, is_map(found) ? found : string::npos);
+	}
+
+	/// A member that is put into the declared map must come back out of YADE's own list of members.
+	void place_in_clump()
+	{
+		py::object clump = make("Clump");
+		auto& members = *reinterpret_cast<decltype(yade::Clump::members)*>(address_of(clump) + offsetof(yade::Clump, members));
+		const Real position[3] = { next(), next(), next() };
+		members[7] = { { position[0], position[1], position[2] }, { 0.5, -0.5, 0.5, 0.5 } };  // x, y, z, w
+		const py::object found = clump.attr("members").attr("get")(7);
+		++facts_;
+		if (!found.is_none() && found[0] == eigen_.attr("Vector3")(position[0], position[1], position[2]) &&
+			found[1] == eigen_.attr("Quaternion")(0.5, 0.5, -0.5, 0.5))
+			return;
+		refuse("Clump.members does not hold places as position and orientation");
 	}
 
 	void interaction()

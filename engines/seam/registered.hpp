@@ -11,18 +11,19 @@
 ///       Real impulse = 0;
 ///   };
 ///
-/// From that come the keyword constructor, Python properties, `dict()`, `updateAttrs` and `O.save`/`O.load`.
+/// From that come `dict()`, `O.save` and `O.load`, and with `seam::bind` (bind.hpp) what Python sees: the keyword constructor,
+/// properties, `updateAttrs`.
 #pragma once
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/archive/xml_iarchive.hpp>
 #include <boost/archive/xml_oarchive.hpp>
-#include <boost/python/raw_function.hpp>
 #include <boost/serialization/export.hpp>
 #include <boost/serialization/nvp.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 #include <boost/serialization/void_cast.hpp>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 
@@ -43,27 +44,50 @@ void require(bool holds, const char* rule, const T& got)
 namespace seam {
 
 /// The attributes of YADE's bases that survive in an archive.
-template <class Archive>
-void serialize_base(Archive& archive, yade::Engine& engine)
+template <class Visit>
+void visit_base(yade::Engine& engine, Visit&& visit)
 {
-	archive& boost::serialization::make_nvp("dead", engine.dead);
-	archive& boost::serialization::make_nvp("ompThreads", engine.ompThreads);
-	archive& boost::serialization::make_nvp("label", engine.label);
+	visit("dead", engine.dead);
+	visit("ompThreads", engine.ompThreads);
+	visit("label", engine.label);
 }
-template <class Archive>
-void serialize_base(Archive& archive, yade::Functor& functor)
+template <class Visit>
+void visit_base(yade::Functor& functor, Visit&& visit)
 {
-	archive& boost::serialization::make_nvp("label", functor.label);
+	visit("label", functor.label);
 }
-template <class Archive>
-void serialize_base(Archive& archive, yade::FrictPhys& phys)
+template <class Visit>
+void visit_base(yade::FrictPhys& phys, Visit&& visit)
 {
-	archive& boost::serialization::make_nvp("kn", phys.kn);
-	archive& boost::serialization::make_nvp("normalForce", phys.normalForce);
-	archive& boost::serialization::make_nvp("ks", phys.ks);
-	archive& boost::serialization::make_nvp("shearForce", phys.shearForce);
-	archive& boost::serialization::make_nvp("tangensOfFrictionAngle", phys.tangensOfFrictionAngle);
+	visit("kn", phys.kn);
+	visit("normalForce", phys.normalForce);
+	visit("ks", phys.ks);
+	visit("shearForce", phys.shearForce);
+	visit("tangensOfFrictionAngle", phys.tangensOfFrictionAngle);
 }
+
+/// The values of an object's attributes, to go back to if new ones are refused.
+class Snapshot {
+public:
+	template <class Self, class Base>
+	Snapshot(Self& object, Base& base)
+	{
+		Self::attributes([&](const char*, auto member, const char*) { keep(object.*member); });
+		visit_base(base, [&](const char*, auto& value) { keep(value); });
+	}
+	void restore() const
+	{
+		for (const auto& put_back : put_back_) put_back();
+	}
+
+private:
+	template <class Value>
+	void keep(Value& value)
+	{
+		put_back_.push_back([&value, before = value] { value = before; });
+	}
+	std::vector<std::function<void()>> put_back_;
+};
 
 inline const char* base_name(const yade::Engine*) { return "Engine"; }
 inline const char* base_name(const yade::LawFunctor*) { return "LawFunctor"; }
@@ -134,15 +158,22 @@ public:
 		return all;
 	}
 
+	/// Takes the value back if `check` refuses it.
 	void pySetAttr(const std::string& key, const boost::python::object& value) override
 	{
-		if (set(key, value))
-			self().assigned(key);
-		else
-			Base::pySetAttr(key, value);
+		const seam::Snapshot before = snapshot();
+		try {
+			if (!set(key, value)) Base::pySetAttr(key, value);
+			self().check();
+		} catch (...) {
+			before.restore();
+			throw;
+		}
 	}
 
-	/// Sets one of our own attributes; false if there is none of that name.
+	seam::Snapshot snapshot() { return { self(), static_cast<Base&>(*this) }; }
+
+	/// Sets one of our own attributes, unchecked; false if there is none of that name.
 	bool set(const std::string& key, const boost::python::object& value)
 	{
 		bool found = false;
@@ -159,18 +190,20 @@ public:
 			}
 			self().*member = extracted();
 		});
+		if (found) self().assigned(key);
 		return found;
 	}
 
 	void check() const {}
-	/// Hears that Python has set the attribute of that name. What it throws takes the new value back.
+	/// Told the name of every attribute that Python assigns; archives do not come here. What it throws takes the new value back.
 	void assigned(const std::string&) {}
 
 	template <class Archive>
 	void serialize(Archive& archive, unsigned)
 	{
 		boost::serialization::void_cast_register<Self, Base>();
-		seam::serialize_base(archive, static_cast<Base&>(*this));
+		seam::visit_base(static_cast<Base&>(*this),
+			[&](const char* name, auto& value) { archive& boost::serialization::make_nvp(name, value); });
 		Self::attributes(
 			[&](const char* name, auto member, const char*) { archive& boost::serialization::make_nvp(name, self().*member); });
 		if constexpr (Archive::is_loading::value) self().callPostLoad();
@@ -181,79 +214,6 @@ private:
 	const Self& self() const { return static_cast<const Self&>(*this); }
 };
 
-namespace seam {
-
-namespace py = boost::python;
-
-template <class Self>
-void set_or_explain(Self& object, const std::string& key, const py::object& value)
-{
-	if (object.set(key, value)) return;
-	const py::object wrapped(py::ptr(&object));
-	if (PyObject_HasAttrString(wrapped.ptr(), key.c_str())) {  // dead, label, ...
-		object.pySetAttr(key, value);
-		return;
-	}
-	std::string names;
-	Self::attributes([&](const char* name, auto, const char*) { names += std::string(names.empty() ? "" : ", ") + name; });
-	PyErr_SetString(PyExc_AttributeError,
-		(std::string(Self::class_name) + " has no attribute '" + key + "'; it has " + names + ", label, dead").c_str());
-	py::throw_error_already_set();
-}
-
-/// `Class(a=1, b=2)`: all values first, then one check, so that their order does not matter.
-template <class Self>
-py::object construct(const py::tuple& arguments, const py::dict& keywords)
-{
-	py::object made = arguments[0];
-	if (py::len(arguments) > 1) {
-		PyErr_SetString(PyExc_TypeError, (std::string(Self::class_name) + " takes keyword arguments only").c_str());
-		py::throw_error_already_set();
-	}
-	made.attr("__init__")();
-	Self& object = py::extract<Self&>(made);
-	const py::list items = keywords.items();
-	for (long i = 0; i < py::len(items); ++i) set_or_explain(object, py::extract<std::string>(items[i][0]), items[i][1]);
-	object.check();
-	return {};
-}
-
-/// A property whose new value is taken back if the object's check refuses it.
-template <class Self, class Value>
-void set_checked(Self& object, const std::string& name, Value Self::*member, const Value& value)
-{
-	const Value before = object.*member;
-	object.*member = value;
-	try {
-		object.check();
-		object.assigned(name);
-	} catch (...) {
-		object.*member = before;
-		throw;
-	}
-}
-
-/// Registers a class with Boost.Python; more `.def`s may follow on what it returns.
-template <class Self, class Base = yade::Engine>
-auto bind(const char* documentation)
-{
-	py::class_<Self, boost::shared_ptr<Self>, py::bases<Base>, boost::noncopyable> cls(
-		Self::class_name, documentation, py::no_init);
-	cls.def("__init__", py::raw_function(&construct<Self>, 1));  // first: later overloads are tried before it
-	cls.def(py::init<>());
-	Self::attributes([&](const char* name, auto member, const char* doc) {
-		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;
-		const auto get = [member](const Self& object) -> Value { return object.*member; };
-		const auto set = [member, name](Self& object, const Value& value) {
-			set_checked(object, name, static_cast<Value Self::*>(member), value);
-		};
-		cls.add_property(name, py::make_function(get, py::default_call_policies(), boost::mpl::vector<Value, const Self&>()),
-			py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Self&, const Value&>()), doc);
-	});
-	return cls;
-}
-
-}  // namespace seam
 }  // namespace graindrive
 
 namespace boost::serialization {

@@ -36,6 +36,18 @@ const std::vector<int>& SceneContacts::members_of(int body)
 
 namespace {
 
+/// False while YADE's InteractionLoop is dead: contacts then stay as they were, but no force acts.
+bool contacts_act(const yade::Scene& scene)
+{
+	bool dead = false;
+	for (const auto& engine : scene.engines) {
+		if (engine->getClassName() != "InteractionLoop") continue;
+		if (!engine->dead) return true;
+		dead = true;
+	}
+	return !dead;
+}
+
 /// Coulomb's bound, where the law itself does not tell: YADE's own laws leave |F_t| exactly at the bound.
 bool at_coulomb_bound(const yade::FrictPhys& phys)
 {
@@ -43,38 +55,57 @@ bool at_coulomb_bound(const yade::FrictPhys& phys)
 	return bound > 0 && phys.shearForce.norm() >= bound * (1 - 1e-12);
 }
 
+/// A force that cannot be told must not be taken for none.
+[[noreturn]] void refuse_contact(int body, const yade::Interaction& interaction)
+{
+	throw std::runtime_error("the force of a contact on body " + std::to_string(body) + " is not known: it is a " +
+							 interaction.geom->getClassName() + " with " + interaction.phys->getClassName() +
+							 "; drives and measures read ScGeom with FrictPhys and what derives from them");
+}
+
+/// From the centre of a contact's body to where the law lets the tangential force act, in the body's own periodic image: YADE's
+/// contact point lies in that of body 1. Graindrive's laws leave their lever in the contact; YADE's act at the contact point.
+Vector3r lever_of(const yade::Body& member, bool first, const yade::ScGeom& geom, const ContactPhys* ours)
+{
+	if (!dynamic_cast<const yade::Sphere*>(member.shape.get())) return geom.contactPoint - member.state->pos;  // box, facet
+	const Real reach = (first ? geom.refR1 : geom.refR2) - (ours ? ours->leverLoss : geom.penetrationDepth / 2);
+	return (first ? reach : -reach) * geom.normal;
+}
+
 }  // namespace
 
 void SceneContacts::contacts_on(int body, std::vector<BodyContact>& contacts)
 {
 	const Vector3r centre = body_of(*scene_, body, "contacts").state->pos;
-	for (const int id : members_of(body)) {
+	const std::vector<int>& members = members_of(body);
+	if (!contacts_act(*scene_)) return;
+	for (const int id : members) {
 		const yade::Body& member = *(*scene_->bodies)[id];
 		for (const auto& [partner, interaction] : member.intrs) {
 			if (!interaction->isReal() || !interaction->isActive) continue;
 			const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
 			const auto* phys = dynamic_cast<const yade::FrictPhys*>(interaction->phys.get());
-			if (!geom || !phys) continue;
+			if (!geom || !phys) refuse_contact(id, *interaction);
 			const bool first = interaction->getId1() == id;
-			// From the member's own centre: the contact point of YADE lies in body 1's periodic image.
-			const Real reach = (first ? geom->refR1 : geom->refR2) - geom->penetrationDepth / 2;
-			const Vector3r outward = first ? geom->normal : Vector3r(-geom->normal);
 			const Real sign = first ? -1 : 1;  // normalForce and shearForce act on body 2
 			const auto* ours = dynamic_cast<const ContactPhys*>(phys);
-			contacts.push_back({ id, partner, member.state->pos - centre + reach * outward, sign * phys->normalForce,
-				sign * phys->shearForce, ours ? ours->slipping : at_coulomb_bound(*phys) });
+			const Vector3r lever = member.state->pos - centre + lever_of(member, first, *geom, ours);
+			contacts.push_back({ id, partner, lever, sign * phys->normalForce, sign * phys->shearForce,
+				ours ? ours->slipping : at_coulomb_bound(*phys) });
 		}
 	}
 }
 
+/// Of the contacts alone: YADE's force container also holds what others put there (ForceEngine, O.forces.setPermF).
 Wrench SceneContacts::wrench_on(int body)
 {
-	const Vector3r centre = body_of(*scene_, body, "contacts").state->pos;
+	found_.clear();
+	contacts_on(body, found_);
 	Wrench sum;
-	for (const int id : members_of(body)) {
-		const Vector3r force = scene_->forces.getForceSingle(id);
+	for (const BodyContact& contact : found_) {
+		const Vector3r force = contact.normal_force + contact.tangential_force;
 		sum.force += force;
-		sum.torque += scene_->forces.getTorqueSingle(id) + ((*scene_->bodies)[id]->state->pos - centre).cross(force);
+		sum.torque += contact.lever.cross(force);
 	}
 	return sum;
 }

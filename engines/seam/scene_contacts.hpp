@@ -5,7 +5,7 @@
 
 namespace graindrive {
 
-/// Contacts from YADE's interactions, forces from YADE's force container.
+/// Contacts, and their forces, from YADE's interactions.
 class SceneContacts : public ContactSource {
 public:
 	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
@@ -21,6 +21,7 @@ public:
 private:
 	yade::Scene* scene_ = nullptr;
 	std::vector<int> members_;
+	std::vector<BodyContact> found_;
 };
 
 /// The engine of O.engines that answers in place of YADE's own containers (GrainLoop), or null.

@@ -79,6 +79,8 @@ def add_intruder(clump, x, y, blocked="xyzXYZ"):
 
     beads = [disk(x + bx, y + by, clump.bead_radius, 1.0) for bx, by in clump.beads]
     id_, _ = O.bodies.appendClumped(beads)
+    engines.centre_clump(O._sceneObj, id_, Vector3(float(x), float(y), 0))  # YADE takes the mean of the beads
+    O.bodies[id_].aspherical = False  # for YADE computed it from the beads; with one moment of inertia the body is not
     state = O.bodies[id_].state
     state.mass = clump.mass
     state.inertia = Vector3(1, 1, 1) * clump.inertia

@@ -144,11 +144,15 @@ def test_both_loops_go_the_same_way_until_chaos(wiggle, tmp_path, pressure):
 
 
 def test_an_outline_from_a_file_is_an_intruder(home, tmp_path):
-    (tmp_path / "kite.csv").write_text("x,y\n0,-3\n3,0\n0,4\n-3,0\n")
-    done = yade(home, "wiggle.py", *TINY, "shape=kite.csv", "out=result", folder=tmp_path)
+    (tmp_path / "arrow.csv").write_text("x,y\n0,0\n6,0\n4,8\n")
+    done = yade(home, "wiggle.py", *TINY, "shape=arrow.csv", "out=result", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     with h5py.File(tmp_path / "result/run.h5") as file:
-        assert np.ptp(file["intruder/outline"][:], axis=0) == pytest.approx([6, 7])
+        outline = file["intruder/outline"][:]
+        # It is drawn about the place in the series, which is its centroid.
+        assert outline.mean(axis=0) == pytest.approx([0, 0], abs=1e-12)
+        assert np.ptp(outline, axis=0) == pytest.approx([6, 8])
+        assert (file["series/x"][0], file["series/y"][0]) == (11, 8)  # width/2, height - depth
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,25 @@
+"""The same small scene on YADE's own loop or on GrainLoop, for tests that hold on both."""
+
+import disks
+import numpy as np
+import pytest
+from graindrive import grain_loop
+from yade import O
+
+each_loop = pytest.mark.parametrize("loop", ["yade", "grain"])
+
+
+def put_on(loop, *engines, law=None, **settings):
+    """Put `engines` before the integrator of that loop; soft disks by default, so that large time steps are allowed."""
+    disks.loop(law or disks.hertz(k_n=2e3, k_t=2e3), before_newton=engines, **settings)
+    if loop == "grain":
+        grain_loop.use_grain_loop()
+
+
+def way_of(ident, steps):
+    """Return the body's positions after each of so many steps, shape (steps, 3)."""
+    rows = []
+    for _ in range(steps):
+        disks.run(1)
+        rows.append(O.bodies[ident].state.pos)
+    return np.array(rows)
