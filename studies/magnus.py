@@ -50,9 +50,10 @@ LOOK_EVERY = 50  # blocks between two looks at the error
 CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
 PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
 FIELD_SAMPLES = 1000  # frames that the fields average
-FIELD_REACH = 10  # d around the body, half as much again behind it
+FIELD_REACH = 10, 2  # d around the body, or so many of its diameters where it is large; half as much again behind it
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 LEAST_WINDOW = 0.5  # d of travel to average, or there would be no error
+OVERLAP_KEYS = "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # what may help the guard
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 
 
@@ -87,6 +88,14 @@ class MagnusParameters(intruder.BodyParameters):
     def way(self):
         """How far the body goes [d]."""
         return self.width if self.travel is None else self.travel
+
+    def auto_values(self):
+        """Return what is taken for travel=auto."""
+        return {"travel": self.way}
+
+    def identity(self):
+        """Return all that decides the result; travel=auto counts as itself, so that older runs are found again."""
+        return {**super().identity(), "travel": self.travel}
 
     @property
     def spin(self):
@@ -136,24 +145,27 @@ def check_load(p, grains):
         )
 
 
+def recipe(p, body):
+    """Return the recipe of the channel around the held body."""
+    return channel.ChannelRecipe(
+        width=p.width * D,
+        height=p.height * D,
+        d=D,
+        d_min=(1 - p.polydispersity) * D,
+        d_max=(1 + p.polydispersity) * D,
+        phi=p.phi,
+        material=material(0.0, PREPARATION_DAMPING),
+        **body.placed((p.width * D / 2, 0.0)),
+        body_area=body.area,
+        closing_speed=CLOSING_SPEED,
+        rest_speed=REST_SPEED,
+        seed=p.seed,
+    )
+
+
 def packing(p, body):
     """Return the channel's grains around the held body, from the cache or by making them."""
-    return channel.channel(
-        channel.ChannelRecipe(
-            width=p.width * D,
-            height=p.height * D,
-            d=D,
-            d_min=(1 - p.polydispersity) * D,
-            d_max=(1 + p.polydispersity) * D,
-            phi=p.phi,
-            material=material(0.0, PREPARATION_DAMPING),
-            **body.placed((p.width * D / 2, 0.0)),
-            body_area=body.area,
-            closing_speed=CLOSING_SPEED,
-            rest_speed=REST_SPEED,
-            seed=p.seed,
-        )
-    )
+    return channel.channel(recipe(p, body))
 
 
 def add_walls(p):
@@ -207,7 +219,8 @@ def measures(p, held, dt):
 
 def field_reach(p):
     """Return how far the fields reach around the body [d], a whole number."""
-    return min(FIELD_REACH, int(p.width / 2.5), int(p.height / 2))
+    least, diameters = FIELD_REACH
+    return min(max(least, int(diameters * p.intruder_diameter)), int(p.width / 2.5), int(p.height / 2))
 
 
 def field_averager(p, held, dt):
@@ -239,6 +252,7 @@ def check(p):
     check_load(p, grains)
     progress.require_feasible(p.way * D / (p.v0 * dt))
     body = intruder.of_size(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
+    channel.check(recipe(p, body))
     smallest = (1 - p.polydispersity) * D / 2
     return body, scene.check_time_step(dt, grains, smallest, p.largest_overlap, lightest=body.mass)
 
@@ -288,14 +302,15 @@ def record(p, folder, stage):
         return looks and steady().is_good_to(p.until_error, FEWEST_BLOCKS)
 
     label = f"driving {p.way:g} d"
-    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=label)
+    with recording.overlap_advice(OVERLAP_KEYS):
+        recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=label)
     frames.take_what_is_left(O.time)
     found = steady()
     say_if_not_resolved(p, found)
     if p.fields:
         fields.write_fields(folder, "around", around)
     folder.write("angular", found.angular, first_travel=found.start)
-    folder.summarize(v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, **found.summary)
+    folder.summarize(v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, travel=p.way, **found.summary)
 
 
 def main(**defaults):

@@ -9,7 +9,8 @@ velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are
 
 Cost: the paper's size is 63,000 disks and 1e7 steps, for a disk with A = 3 some 70 minutes of two cores at T = 4 and 100 at
 T = 1 by the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 disks and 1.2e5 steps, a minute or two. A lid
-presses for the bed that the demo leaves out (0.84 rho g d for each d of it).
+presses for the bed that the demo leaves out (0.84 rho g d for each d of it); lid_pressure=auto, the default, follows the depth.
+The smoke run has no lid, to be quick.
 
 What a cheaper scene changes, for the disk at A = 3, time = 100: V_y in sqrt(g d) of two or three seeds, with errors widened to
 their scatter, and the seconds that a run took of one busy core (studies/campaigns/wiggle_scene.yaml; studies/RESULTS.md):
@@ -38,7 +39,7 @@ surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of d
 
 import os
 import sys
-from typing import Literal
+from typing import Literal, Optional
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
 
@@ -60,7 +61,11 @@ SAMPLES_PER_PERIOD = 40
 SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
 SKIPPED = 0.1  # of the run, before averages begin
 PHASES = 20  # parts of the cycle
-FIELD_REACH, FIELD_SAMPLES = 15, 100  # d from the body; samples of the fields per period
+FIELD_REACH, FIELD_SAMPLES = (15, 5), 100  # d from the body's centre, and at least from its sides; samples per period
+PAPERS_DEPTH = 105  # d, of the body's centre
+# What may help where grains overlap too far: in the run, and while the bed settles.
+OVERLAP_KEYS = "lower dt_factor or amplitude, raise period or largest_overlap"
+BED_OVERLAP_KEYS = "lower dt_factor, height or lid_pressure"
 MOTION = dict(x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g")
 SERIES = dict(t="sqrt(d/g)", **MOTION, contacts="-", work="rho g d^3")
 
@@ -84,18 +89,36 @@ class WiggleParameters(intruder.BodyParameters):
     frames: int = quantity(10, "-", "pictures of the bed that are kept, up to 40 a period", ge=1, le=9999)
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
-    orientation_deg: float = quantity(0.0, "degrees", "the shape turned counter-clockwise about its centroid")
+    orientation_deg: float = quantity(
+        0.0, "degrees", "the shape turned counter-clockwise about its centroid", ge=-360, le=360
+    )
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
     bead_spacing: float = quantity(1.0, "bead diameters", "longest step between beads along the outline", gt=0, le=1)
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
     fields: bool = quantity(False, "-", "also average area fraction, velocity and pressure around the body by phase")
-    lid_pressure: float = quantity(0.0, "rho d g", "weight over width of a lid: 0.84 for every d of bed left out", ge=0)
+    lid_pressure: Optional[float] = quantity(
+        None,
+        "rho d g",
+        "weight over width of a lid; auto: 0.84 for every d by which depth is below the paper's 105",
+        ge=0,
+    )
     lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
+
+    @property
+    def lid_load(self):
+        """Weight over width of the lid [rho d g]."""
+        return lid.weight_of_bed(PAPERS_DEPTH - self.depth) if self.lid_pressure is None else self.lid_pressure
+
+    def auto_values(self):
+        """Return what is taken for lid_pressure=auto."""
+        return {"lid_pressure": self.lid_load}
 
 
 PRESETS = {
-    "smoke": dict(width=26, height=18, depth=8, time=4, amplitude=1.5, period=2, frames=2, dt_factor=5, rest=0.05),
-    "demo": dict(width=120, height=90, depth=50, lid_pressure=46.2, time=60, period=4, dt_factor=5, rest=1e-3),
+    "smoke": dict(
+        width=26, height=18, depth=8, lid_pressure=0, time=4, amplitude=1.5, period=2, frames=2, dt_factor=5, rest=0.05
+    ),
+    "demo": dict(width=120, height=90, depth=50, time=60, period=4, dt_factor=5, rest=1e-3),
     "paper": {},
 }
 
@@ -117,29 +140,33 @@ def body_of(p):
         mass=p.intruder_mass,
     )
     swing = p.amplitude if p.drive == "displacement" else p.amplitude * p.period / (2 * np.pi)
-    roof = lid.room(p.lid, p.lid_pressure)
+    roof = lid.room(p.lid, p.lid_load)
     intruder.check_room(body, swing=swing, width=p.width, height=p.height, depth=p.depth, lid=roof)
     return body
 
 
+def bed_recipe(p, body, at, dt, grains):
+    """Return the recipe of the bed around the held body."""
+    return packing.BedRecipe(
+        width=p.width,
+        height=p.height,
+        d_min=SMALLEST_DIAMETER,
+        d_max=LARGEST_DIAMETER,
+        material=grains,
+        **body.placed(at),
+        outline_area=body.area,
+        dt=dt,
+        rest=p.rest,
+        seed=p.seed,
+        lid=p.lid,
+        lid_pressure=p.lid_load,
+    )
+
+
 def make_bed(p, body, at, dt, grains):
     """Return the settled bed around the held body, from the cache or by pouring it."""
-    return packing.settled_bed(
-        packing.BedRecipe(
-            width=p.width,
-            height=p.height,
-            d_min=SMALLEST_DIAMETER,
-            d_max=LARGEST_DIAMETER,
-            material=grains,
-            **body.placed(at),
-            outline_area=body.area,
-            dt=dt,
-            rest=p.rest,
-            seed=p.seed,
-            lid=p.lid,
-            lid_pressure=p.lid_pressure,
-        )
-    )
+    with recording.overlap_advice(BED_OVERLAP_KEYS):
+        return packing.settled_bed(bed_recipe(p, body, at, dt, grains))
 
 
 def build(p, body, at, bed, dt, grains):
@@ -150,7 +177,7 @@ def build(p, body, at, bed, dt, grains):
     base = scene.add_base(p.width, 1.0, grains.density)
     ids = scene.add_disks(bed["x"], bed["y"], bed["r"], bed["density"])
     held = scene.add_intruder(body, *at, blocked="xzXYZ")
-    roof = scene.members(lid.add_rigid(p.width, float(bed["lid_y"]), p.lid_pressure)) if "lid_y" in bed else []
+    roof = scene.members(lid.add_rigid(p.width, float(bed["lid_y"]), p.lid_load)) if "lid_y" in bed else []
     O.dt = dt
     scene.run_as_asked(p, grains, gravity=1.0, between=[*measures(p, held, dt), imposed_motion(p, held)])
     return dict(base=len(base), grains=len(ids), body=held, lid=roof)
@@ -171,7 +198,7 @@ def check_period(p, dt):
             f"period={p.period:g} sqrt(d/g) must be at most {SAMPLES_PER_PERIOD} times time={p.time:g}, or nothing of it is seen;"
             " raise time or lower period"
         )
-    if p.amplitude and p.period < SAMPLES_PER_PERIOD * dt:
+    if p.period < SAMPLES_PER_PERIOD * dt:
         raise UsageError(
             f"period={p.period:g} sqrt(d/g) must be at least {SAMPLES_PER_PERIOD} time steps, {SAMPLES_PER_PERIOD * dt:.3g};"
             " raise it or lower dt_factor"
@@ -189,9 +216,10 @@ def measures(p, held, dt):
 
 def field_averager(p, held, dt):
     """Return the averager of Eqs 3.1-3.5 around the body, by phase."""
-    reach = min(FIELD_REACH, 2 * int(p.width / 4))
+    around, beside = FIELD_REACH
+    reach = min(max(around, int(np.abs(body_of(p).outline).max()) + beside), 2 * int(p.width / 4))
     corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=0.5)
-    phases = dict(phases=PHASES, period=p.period, every=max(1, round(p.period / FIELD_SAMPLES / dt)))
+    phases = dict(phases=PHASES, period=p.period, every=max(1, round(min(p.period, p.time) / FIELD_SAMPLES / dt)))
     smooth = dict(kernel="gaussian", width=1, cutoff=3)
     return engines.FieldAverager(body=held, dead=True, label="around", **smooth, **corners, **phases)
 
@@ -216,23 +244,36 @@ def keep_rates(p, folder, t, y):
 
 def check(p):
     """Refuse values that no run can be made of; return the body and the time step over the critical one."""
-    body, dt = body_of(p), TIME_STEP * p.dt_factor
-    ratio = scene.check_time_step(dt, material(p), SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=p.intruder_mass)
+    body, dt, grains = body_of(p), TIME_STEP * p.dt_factor, material(p)
+    lightest = (
+        min(p.intruder_mass, p.lid_load or np.inf) if p.lid == "rigid" else p.intruder_mass
+    )  # the lid's, on each d
+    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap, lightest=lightest)
     check_period(p, dt)
     progress.require_feasible(p.time / dt)
+    bed = bed_recipe(p, body, centre(p), dt, grains)
+    packing.count_grains(bed)
+    packing.check_load(bed, p.largest_overlap, p.intruder_mass / np.ptp(body.outline[:, 0]))
     return body, ratio
+
+
+def centre(p):
+    """Return where the body begins, (2,) [d]."""
+    return np.array([p.width / 2, p.height - p.depth])
 
 
 def run(p, folder):
     """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
     (body, ratio), dt, grains = check(p), TIME_STEP * p.dt_factor, material(p)
+    print(lid.pressures_in_words(p.depth, PAPERS_DEPTH, p.lid_load, p.lid_pressure is None), file=sys.stderr)
     if folder.resumed:
         stage = recording.load_stage(folder, ("base", "grains", "body", "lid"))
     else:
-        at = np.array([p.width / 2, p.height - p.depth])
+        at = centre(p)
         stage = build(p, body, at, make_bed(p, body, at, dt, grains), dt, grains)
     folder.write("intruder", body.as_arrays("d"))
     folder.summarize(fall_height=body.fall_height, intruder_height=body.height)
+    folder.summarize(lid_pressure=p.lid_load, pressure_at_body=lid.weight_of_bed(p.depth) + p.lid_load)
     recording.announce(folder, grains=stage["grains"], dt=dt, ratio=ratio, unit="sqrt(d/g)")
     record(p, folder, stage)
 
@@ -259,7 +300,8 @@ def record(p, folder, stage):
             around.dead = t < SKIPPED * p.time
         frames.take_if_due(done, t)
 
-    recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
+    with recording.overlap_advice(OVERLAP_KEYS):
+        recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
     keep_rates(p, folder, **track.arrays())
     if p.fields:
         fields.write_fields(folder, "around", around, fields.GRAIN)

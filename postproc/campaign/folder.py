@@ -30,9 +30,16 @@ class Campaign:
     def of(cls, folder):
         """Open the campaign in `folder`."""
         try:
-            return cls(Path(folder), json.loads((Path(folder) / "campaign.json").read_text()))
+            plan = json.loads((Path(folder) / "campaign.json").read_text())
         except (FileNotFoundError, NotADirectoryError):
             raise RunError(f"{folder} is not the folder of a campaign: it holds no campaign.json") from None
+        except (OSError, ValueError, RecursionError) as error:
+            raise RunError(f"{folder}/campaign.json cannot be read ({' '.join(str(error).split())})") from None
+        if not isinstance(plan, dict) or not {"name", "runs", "report"} <= set(plan):
+            raise RunError(
+                f"{folder}/campaign.json is no plan of a campaign; a call of scripts/campaign writes it anew"
+            )
+        return cls(Path(folder), plan)
 
     @cached_property
     def table(self):
@@ -49,7 +56,7 @@ class Campaign:
         """The table with the errors that each run gave."""
         rows = [row for row in map(self.row, self.plan["runs"]) if row]
         table = pd.DataFrame(rows, columns=None if rows else ["run", "sweeps"])
-        return table.sort_values(self.varied(table) or ["run"], kind="stable", ignore_index=True)
+        return table.sort_values(self.varied(table) or ["run"], kind="stable", ignore_index=True, key=sortable)
 
     @cached_property
     def widened(self):
@@ -95,3 +102,8 @@ class Campaign:
     def sweep(self, name):
         """Return the rows of the table that belong to a sweep."""
         return self.table[[name in sweeps.split() for sweeps in self.table["sweeps"]]]
+
+
+def sortable(column):
+    """Return a column as it can be sorted: one that holds words and numbers (`auto` beside 60) by its text."""
+    return column.astype(str) if len(set(column.map(lambda value: isinstance(value, str)))) > 1 else column

@@ -3,6 +3,7 @@
 import importlib
 import os
 from dataclasses import dataclass, replace
+from urllib.parse import quote
 
 from .. import figures
 from .folder import Campaign
@@ -117,7 +118,7 @@ def core_seconds(table):
 
 def values(column):
     """Return the different values of a column in words."""
-    return ", ".join(number(value) for value in sorted(column.unique()))
+    return ", ".join(number(value) for value in sorted(column.unique(), key=lambda v: (isinstance(v, str), v)))
 
 
 def number(value):
@@ -127,7 +128,7 @@ def number(value):
 
 def section_text(campaign, section):
     """Return one figure with its caption and its claims as Markdown."""
-    image = f"![{section.title}](figures/{campaign.plan['name']}-{section.figure}.png)"
+    image = f"![{section.title}](figures/{quote(campaign.plan['name'])}-{section.figure}.png)"
     heading = "| claim | source | expected | measured | rule | verdict | settings | runs, core-s |"
     rows = [claim_row(campaign.table, claim) for claim in section.claims]
     return "\n\n".join([f"### {section.title}", image, section.caption, "\n".join([heading, "|---" * 8 + "|", *rows])])

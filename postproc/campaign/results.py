@@ -21,7 +21,7 @@ that `scripts/campaign` leaves; not written by hand. Errors are standard errors.
 σ being the standard error; a measurement that cannot tell a claim from its opposite is *not decided*.
 """
 SECTION = "<!-- campaign {name} -->\n{text}\n<!-- end of {name} -->\n"
-SECTIONS = re.compile(r"<!-- campaign (?P<name>\S+) -->\n(?P<text>.*?)\n<!-- end of (?P=name) -->\n", re.DOTALL)
+SECTIONS = re.compile(r"<!-- campaign (?P<name>[^\n]+?) -->\n(?P<text>.*?)\n<!-- end of (?P=name) -->\n", re.DOTALL)
 
 
 def publish(folders, studies):
@@ -70,8 +70,8 @@ def main(arguments):
     try:
         print(f"graindrive: see {publish(arguments, Path(__file__).resolve().parents[2] / 'studies')}", file=sys.stderr)
         return 0
-    except (RunError, OSError) as error:
-        print(f"graindrive.postproc.campaign.results: error: {error}", file=sys.stderr)
+    except (RunError, OSError, UnicodeError) as error:
+        print(f"graindrive.postproc.campaign.results: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
 
 

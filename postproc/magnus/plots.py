@@ -9,7 +9,6 @@ from ..figures import BLACK, GREY, plt
 from .claims import by_phi, over_no_spin
 from .model import saturated_lift_to_drag
 from .runs import by_angle, fields_over_repeats
-from .wake import INTRUDER_RADIUS
 
 
 def against_speed(campaign, rows, claims):
@@ -112,9 +111,8 @@ def around_intruder(campaign, rows, claims):
         fields.draw_map(column[2], found, "temperature", vmin=0, vmax=warm)
         column[0].set_title(f"Ω = {spin:g}")
         for panel in column:
-            panel.add_patch(
-                plt.Circle((0, 0), INTRUDER_RADIUS, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3)
-            )
+            radius = group["intruder_diameter"].iloc[0] / 2
+            panel.add_patch(plt.Circle((0, 0), radius, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
     return figure
 
 

@@ -1,7 +1,8 @@
 """The claims of the Magnus paper's Fig. 7: an empty core, a wake that widens and bends, and where grains are hottest.
 
 All in the intruder's frame, V along +x and omega > 0, lengths in d, y positive on the side that the paper calls advancing
-(0 < θ < π/2, section IV). Each repeat gives one number; their scatter is the error.
+(0 < θ < π/2, section IV). Each repeat gives one number; their scatter is the error. The distances that numbers are taken at
+count in radii of the body, half of its key intruder_diameter.
 """
 
 import numpy as np
@@ -12,7 +13,6 @@ from ..campaign.verdicts import Claim, above, below
 from ..measured import UNKNOWN
 from .figure import fields_of
 
-INTRUDER_RADIUS = 2.5  # [d]
 SOURCE = "Fig. 7"
 
 
@@ -39,40 +39,41 @@ def wake_claims(campaign, rows):
 
 
 def over_runs(campaign, rows, number):
-    """Return the mean of `number(phi of the packing, Fields)` over runs, as `Measured`; unknown without runs."""
-    values = [number(phi, fields_of(campaign.run(name))) for name, phi in zip(rows["run"], rows["phi"])]
+    """Return the mean of `number(phi of the packing, radius of the body [d], Fields)` over runs; unknown without runs."""
+    runs = zip(rows["run"], rows["phi"], rows["intruder_diameter"])
+    values = [number(phi, diameter / 2, fields_of(campaign.run(name))) for name, phi, diameter in runs]
     return over_repeats(values) if values and np.all(np.isfinite(values)) else UNKNOWN
 
 
-def core_fraction(phi, found):
+def core_fraction(phi, radius, found):
     """Return the area fraction within 0.5 d of the axis, from the body to one radius behind it, over the packing's."""
-    behind = (found.x < -INTRUDER_RADIUS - 0.2) & (found.x > -2 * INTRUDER_RADIUS)
+    behind = (found.x < -radius - 0.2) & (found.x > -2 * radius)
     middle = np.abs(found.y) < 0.5
     return float(np.mean(found.map("area_fraction")[np.ix_(middle, behind)]) / phi)
 
 
-def wake_width(phi, found):
+def wake_width(phi, radius, found):
     """Return the mean width [d], over the columns of `depletion`, of the area that the wake lacks."""
-    y, depth = depletion(phi, found)
+    y, depth = depletion(phi, radius, found)
     return float(np.mean(depth.sum(axis=0)) * (y[1] - y[0]))
 
 
-def wake_centre(phi, found):
+def wake_centre(phi, radius, found):
     """Return the mean y [d] of the area that the wake lacks; nan if it lacks none."""
-    y, depth = depletion(phi, found)
+    y, depth = depletion(phi, radius, found)
     return float(np.sum(y[:, None] * depth) / np.sum(depth)) if depth.sum() > 0 else float("nan")
 
 
-def depletion(phi, found):
+def depletion(phi, radius, found):
     """Return y (n,) and 1 - local over mean area fraction, not below 0, (n, m): within four radii of the axis, from one to
     two radii behind the body.
     """
-    behind = (found.x < -2 * INTRUDER_RADIUS) & (found.x > -3 * INTRUDER_RADIUS)
-    near = np.abs(found.y) < 4 * INTRUDER_RADIUS
+    behind = (found.x < -2 * radius) & (found.x > -3 * radius)
+    near = np.abs(found.y) < 4 * radius
     return found.y[near], np.clip(1 - found.map("area_fraction")[np.ix_(near, behind)] / phi, 0, None)
 
 
-def hottest_side(phi, found):
+def hottest_side(phi, radius, found):
     """Return sin(theta) of the hottest place within two radii, of averages over 0.5 d that are a tenth full or more."""
     x, y = np.meshgrid(found.x, found.y)
     temperature = found.map("temperature")
@@ -81,7 +82,7 @@ def hottest_side(phi, found):
     heat = uniform_filter(np.nan_to_num(temperature) * weight, size, mode="nearest")
     weight = uniform_filter(weight, size, mode="nearest")
     distance = np.hypot(x, y)
-    counted = (weight > 0.1 * phi) & (distance > INTRUDER_RADIUS) & (distance < 2 * INTRUDER_RADIUS)
+    counted = (weight > 0.1 * phi) & (distance > radius) & (distance < 2 * radius)
     if not counted.any():
         return float("nan")
     place = np.argmax(np.where(counted, heat / np.maximum(weight, 1e-300), -np.inf))

@@ -15,7 +15,7 @@ from .errors import UsageError
 RECIPE = 1  # raise it when a channel of the same parameters comes out different
 THINNED_FROM, INSERTED_BELOW = 0.78, 0.5  # the paper's bounds between its three recipes
 
-__all__ = ["ChannelRecipe", "channel", "check_room"]
+__all__ = ["ChannelRecipe", "channel", "check", "check_room"]
 
 
 def check_room(width, height, diameter):

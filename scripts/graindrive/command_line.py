@@ -67,10 +67,15 @@ def split(cls, argument):
         hint = f"{owner}={bare}" if owner else nearest(bare, cls.__fields__, "", "=…")
         way_out = f"did you mean {hint}?" if hint else "help lists the keys"
         raise UsageError(f"'{one_line(argument)}' is not of the form key=value; {way_out}")
-    if key not in cls.__fields__:
-        hint = nearest(bare, cls.__fields__, "did you mean ", "? ")
-        raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
+    require_key(cls, key)
     return key, text.strip()
+
+
+def require_key(cls, key):
+    """Raise UsageError with the nearest right spelling unless `key` is one of the class."""
+    if key not in cls.__fields__:
+        hint = nearest(str(key).lstrip("-").replace("-", "_"), cls.__fields__, "did you mean ", "? ")
+        raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
 
 
 def nearest(word, words, before, after):
@@ -154,14 +159,28 @@ def folder_name(study, scale, given, cls):
 def help_table(cls, presets, *, study, defaults=None):
     """Return the table of keys: key, unit, default (and what a scale changes), meaning and what is allowed."""
     rows = [("key", "unit", "default", "meaning")]
+    defaults = defaults or {}
+    runs = {scale: cls(**{**defaults, **values, "scale": scale}) for scale, values in presets.items()}
+
+    def default_of(key):
+        usual = shown(defaults.get(key, cls.__fields__[key].default))
+        found = {
+            scale: taken_text(runs[scale], key) or shown(values.get(key, usual)) for scale, values in presets.items()
+        }
+        changed = [f"{scale}: {text}" for scale, text in found.items() if key in presets[scale] or text != usual]
+        return ", ".join(changed) if len(changed) == len(presets) else ", ".join([usual] + changed)
+
     for key, field in cls.__fields__.items():
-        default = (defaults or {}).get(key, field.default)
-        changed = [f"{scale}: {shown(values[key])}" for scale, values in presets.items() if key in values]
-        default = ", ".join(changed) if len(changed) == len(presets) else ", ".join([shown(default)] + changed)
-        rows.append((key, cls.unit(key), default, f"{field.field_info.description} ({allowed(field)})"))
+        rows.append((key, cls.unit(key), default_of(key), f"{field.field_info.description} ({allowed(field)})"))
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     lines = ["  ".join([cell.ljust(width) for cell, width in zip(row, widths)] + [row[3]]) for row in rows]
     return "\n".join([f"usage: yade {study}.py [key=value …]", ""] + lines)
+
+
+def taken_text(p, key):
+    """Return for a key that is `auto` what is taken for it, "auto (46.2)"; "" for any other."""
+    taken = p.taken()[key]
+    return f"auto ({shown(taken)})" if getattr(p, key) is None and taken is not None else ""
 
 
 def shown(value):

@@ -112,7 +112,7 @@ def guarded(action, name):
     except UsageError as error:
         if os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0"):
             traceback.print_exc()
-        print(f"{name}: error: {error}", file=sys.stderr)
+        print(f"{name}: error: {one_line(error, 1000)}", file=sys.stderr)
         return UsageError.exit_code
     except (Interrupted, KeyboardInterrupt) as stop:
         number = getattr(stop, "signal_number", signal.SIGINT)
@@ -121,7 +121,7 @@ def guarded(action, name):
     except Exception as error:
         if not isinstance(error, EngineError) or os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0"):
             traceback.print_exc()
-        print(f"{name}: failed: {type(error).__name__}: {one_line(error, 300)}", file=sys.stderr)
+        print(f"{name}: failed: {type(error).__name__}: {one_line(error, 500)}", file=sys.stderr)
         return 1
 
 

@@ -14,6 +14,9 @@ from .errors import UsageError, one_line
 from .parameters import StudyParameters
 
 
+MOST_BEADS = 10_000  # each is a disk of YADE's
+
+
 @dataclass(frozen=True)
 class Intruder:
     """A body about its centroid: `beads` (n, 2), their `bead_radius`, corners of its `outline` (m, 2), mass and inertia.
@@ -98,12 +101,23 @@ def about_centroid(outline):
 
 def beads_along(outline, shape, bead_diameter, bead_spacing, mass):
     """Return the `Intruder` with beads along the outline of `shape`; UsageError if they do not fit."""
+    check_bead_count(outline, shape, bead_diameter * bead_spacing)
     try:
         clump = engines.clump_of(outline, bead_diameter, mass, bead_spacing)
     except ValueError as error:
         raise not_a_body(shape, error) from None
     own = about_centroid(outline), outline.area, outline.fall_height
     return Intruder(clump.beads, clump.bead_radius, *own, clump.mass, clump.inertia)
+
+
+def check_bead_count(outline, shape, step):
+    """Raise UsageError for an outline on which beads `step` apart, in its unit, would be more than a run can move."""
+    corners = outline.vertices
+    count = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T).sum() / step
+    if not count <= MOST_BEADS:
+        raise UsageError(
+            f"shape={one_line(shape)} takes {count:.3g} beads, more than {MOST_BEADS}; take larger beads or a wider spacing"
+        )
 
 
 def add_held(body, x, y, density):

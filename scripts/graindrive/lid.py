@@ -9,6 +9,12 @@ import numpy as np
 from . import scene
 
 LAYER = 5.0  # thickness of the heavy layer [d]
+BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
+
+
+def weight_of_bed(depth):
+    """Return the weight over width [rho d g] of `depth` [d] of bed, 0 where there is none."""
+    return 100 * BED_FRACTION * max(depth, 0.0) / 100  # in this order 55 d weigh 46.2 to the last bit
 
 
 def heavy_layer(bed, width, pressure, density, area_fraction):
@@ -24,6 +30,15 @@ def heavy_layer(bed, width, pressure, density, area_fraction):
     chosen = from_the_top[:count]
     densities[chosen] += pressure * width / areas[chosen].sum()
     return densities
+
+
+def pressures_in_words(depth, papers_depth, load, is_auto):
+    """Return the line that says which pressure acts at `depth` [d] under a lid of `load` [rho d g], and the paper's."""
+    bed, papers = weight_of_bed(depth), weight_of_bed(papers_depth)
+    return (
+        f"pressure at the body's depth: {bed + load:.4g} rho d g, {bed:.4g} of the bed above and {load:.4g} of a lid"
+        f" (lid_pressure={'auto' if is_auto else format(load, 'g')}); {papers:.4g} in the paper"
+    )
 
 
 def room(kind, pressure):

@@ -12,7 +12,7 @@ from .material import HertzHistoryMaterial
 RECIPE = 3  # raise it when a bed of the same parameters comes out different
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
-BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
+LARGEST_OVERLAP = 0.3  # [R] where the settling of a bed is stopped
 
 
 @dataclass(frozen=True)
@@ -56,18 +56,45 @@ def as_plain(recipe):
     return plain
 
 
-def insert(recipe):
-    """Place the bed's grains at random above the base and around the intruder; return x, y, r."""
+def count_grains(recipe):
+    """Return how many grains fill the bed; UsageError for none, or more than a run can hold."""
     mean_area = np.pi / 12 * (recipe.d_max**2 + recipe.d_max * recipe.d_min + recipe.d_min**2)
-    count = int((BED_FRACTION * recipe.width * recipe.height - recipe.outline_area) / mean_area)
+    count = (lid.BED_FRACTION * recipe.width * recipe.height - recipe.outline_area) / mean_area
     if count < 1:
         raise UsageError(
             f"a bed {recipe.width} d wide and {recipe.height} d high has no room for grains; make it larger"
         )
     if count > MOST_GRAINS:
         raise UsageError(
-            f"a bed {recipe.width:g} d wide and {recipe.height:g} d high has {count} grains, more than {MOST_GRAINS}"
+            f"a bed {recipe.width:g} d wide and {recipe.height:g} d high has {count:.3g} grains, more than {MOST_GRAINS};"
+            " lower width or height"
         )
+    return int(count)
+
+
+def check_load(recipe, largest_overlap, body_load):
+    """UsageError for weights that press resting grains of 1 d further into each other than `largest_overlap` radii.
+
+    They are those of bed and lid at the base, and `body_load` of the body over its width [rho d g].
+    """
+    most = recipe.material.force_between(0.5, min(largest_overlap, LARGEST_OVERLAP))
+    at_base = lid.weight_of_bed(recipe.height) + recipe.lid_pressure
+    bear = f"grains bear {most:.3g} rho d g at largest_overlap={largest_overlap:g} R"
+    if at_base > most:
+        raise UsageError(
+            f"a bed of height={recipe.height:g} d under a lid of {recipe.lid_pressure:g} rho d g weighs {at_base:.3g} rho d g,"
+            f" but {bear}; lower height or lid_pressure, or raise largest_overlap"
+        )
+    if body_load > most:
+        raise UsageError(
+            f"a body whose mass over width is {body_load:.3g} rho d presses on grains by as many rho d g,"
+            f" but {bear}; lower intruder_mass, or raise largest_overlap"
+        )
+
+
+def insert(recipe):
+    """Place the bed's grains at random above the base and around the intruder; return x, y, r."""
+    count = count_grains(recipe)
     radii = engines.uniform_radii(count, recipe.d_min, recipe.d_max, recipe.seed)
     filled = np.sum(np.pi * radii**2) / INSERTION_FRACTION + recipe.outline_area
     box = (0.0, recipe.width, 0.5, 0.5 + filled / recipe.width)
@@ -113,7 +140,7 @@ def settle(recipe):
     if recipe.lid == "rigid":
         top = float((bed["y"] + bed["r"]).max())
         return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], bed["density"], lid_y=top + 0.5)
-    density = lid.heavy_layer(bed, recipe.width, recipe.lid_pressure, recipe.material.density, BED_FRACTION)
+    density = lid.heavy_layer(bed, recipe.width, recipe.lid_pressure, recipe.material.density, lid.BED_FRACTION)
     return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density)
 
 
@@ -129,7 +156,7 @@ def come_to_rest(recipe, x, y, r, density, lid_y=None):
     )
     ids = scene.add_disks(x, y, r, density)
     rigid = None if lid_y is None else lid.add_rigid(recipe.width, lid_y, recipe.lid_pressure)
-    scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=0.3)
+    scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=LARGEST_OVERLAP)
     O.dt = recipe.dt
     energy = run_until_at_rest(recipe, ids, density, fall_time=np.sqrt(2 * float(y.max())))
     bed = scene.rows_of(ids)
@@ -170,7 +197,10 @@ def run_until_at_rest(recipe, ids, density, fall_time):
 
     progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling (at most)")
     if not energy < recipe.rest:
-        raise RuntimeError(f"the bed keeps a kinetic energy of {energy:.2g} m g d per grain, over {recipe.rest:.2g}")
+        raise RuntimeError(
+            f"the bed keeps a kinetic energy of {energy:.2g} m g d per grain, over {recipe.rest:.2g};"
+            " raise rest or lower dt_factor"
+        )
     return energy
 
 

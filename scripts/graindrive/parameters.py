@@ -2,12 +2,12 @@
 
 import hashlib
 import json
-import math
 from typing import Literal
 
 from pydantic import BaseModel, Field, validator
 
 LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from what double precision can hold
 
 
 def quantity(default, unit, meaning, *, identity=True, **limits):
@@ -25,8 +25,9 @@ def quantity(default, unit, meaning, *, identity=True, **limits):
 class StudyParameters(BaseModel):
     """What every study knows; a study derives its own class from this and adds its fields with `quantity`.
 
-    A parameter is a finite number, a word or a switch; conditions between parameters are pydantic root validators
-    whose ValueError is one plain sentence.
+    A parameter is a number, 0 or of a size between 1e-30 and 1e30, a word or a switch; conditions between parameters are
+    pydantic root validators whose ValueError is one plain sentence. A key that may be None is `auto`: the study derives
+    its value from the others, in `auto_values`.
     """
 
     scale: Literal["smoke", "demo", "paper"] = quantity(
@@ -47,23 +48,36 @@ class StudyParameters(BaseModel):
         allow_mutation = False
 
     @validator("*", pre=True)
-    def _finite_and_whole(cls, value, field):
-        if isinstance(value, float) and not math.isfinite(value):
-            raise ValueError("not finite")
+    def _whole(cls, value, field):
         if plain_type(field) is int and isinstance(value, float) and not value.is_integer():
             raise ValueError("not whole")
         return value
+
+    @validator("*")
+    def _sized(cls, value):
+        return sized(value) if isinstance(value, float) else value
 
     @classmethod
     def unit(cls, key):
         """Return the unit of parameter `key` as text."""
         return cls.__fields__[key].field_info.extra.get("unit", "-")
 
+    def auto_values(self):
+        """Return {key: the value that is taken} of the keys that are `auto`; a study that has such keys overrides this."""
+        return {}
+
+    def taken(self):
+        """Return the dict of all parameters, with the values that are taken for `auto`."""
+        return {**self.dict(), **self.auto_values()}
+
     def identity(self):
-        """Return the dict of all parameters that decide the result: two runs are the same when theirs are equal."""
+        """Return the dict of all parameters that decide the result: two runs are the same when theirs are equal.
+
+        It holds the value that is taken for `auto`, so that a run is the same whether that value was given or not.
+        """
         return {
             key: value
-            for key, value in self.dict().items()
+            for key, value in self.taken().items()
             if self.__fields__[key].field_info.extra.get("identity", True)
         }
 
@@ -82,6 +96,15 @@ class StudyParameters(BaseModel):
         from .command_line import parameters_or_exit
 
         return parameters_or_exit(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
+
+
+def sized(number):
+    """Return a float, a zero without its sign; ValueError if its size is neither 0 nor from 1e-30 to 1e30."""
+    if not (number == 0 or LEAST <= abs(number) <= MOST):
+        raise ValueError(
+            f"the size of a number must be 0 or lie between {LEAST:g} and {MOST:g}; mind the unit of its key"
+        )
+    return number + 0.0
 
 
 def plain_type(field):

@@ -1,10 +1,12 @@
 """Runs a scene in blocks, samples it after each, and keeps checkpoints: a run goes on as if never interrupted (`scene.load`)."""
 
+import contextlib
 import sys
 
 import numpy as np
 
 from . import progress, scene
+from .errors import EngineError
 
 CHECKPOINT_SECONDS = 60
 SCENE = "scene.checkpoint"
@@ -64,6 +66,17 @@ def load_stage(folder, names):
     """Put the scene from which a resumed run goes on into YADE; return the facts of its `stage` by these names."""
     scene.load(folder.resumed["folder"] / SCENE)
     return {name: folder.resumed[name] for name in names}
+
+
+@contextlib.contextmanager
+def overlap_advice(keys):
+    """Add to the message of a guard that stopped grains which overlap too far which `keys` of the study may help."""
+    try:
+        yield
+    except EngineError as error:
+        if "overlap" not in str(error):
+            raise
+        raise EngineError(f"{error}; what may help: {keys}") from None
 
 
 def announce(folder, *, grains, dt, ratio, unit, also=""):

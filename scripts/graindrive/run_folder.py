@@ -15,6 +15,7 @@ from . import run_data, run_remains, signals, vtk_export
 from .errors import Interrupted, UsageError, one_line
 from .provenance import provenance
 
+LONGEST_NAME = 230  # bytes; a file system takes 255, and NAME.interrupted-2 or .NAME.part-PID must fit
 CONTRACT = ("particle_steps_per_second", "steps", "n_grains", "wall_s", "dt_over_critical")
 
 
@@ -30,9 +31,7 @@ class RunFolder:
 
     def __init__(self, parameters, *, study, figure=None):
         self.parameters, self.study, self.figure = parameters, study, figure
-        self.out = Path(parameters.out).expanduser().absolute()
-        if not self.out.name:
-            raise UsageError(f"out={parameters.out} is not the name of a run folder; give one below it")
+        self.out = place_of(parameters.out)
         self.path = self.out.with_name(f".{self.out.name}.part-{os.getpid()}")
         self.provenance, self.summary = provenance(parameters, study), {}
         self.series, self.frames, self.lock, self.made = None, 0, None, []
@@ -210,8 +209,9 @@ class RunFolder:
     def describe(self, file, state):
         """Write parameters with units, and provenance, into an open HDF5 file."""
         file.attrs.update(state=state, study=self.study, digest=self.parameters.digest())
-        for key, value in self.parameters.dict().items():
+        for key, value in self.parameters.taken().items():
             dataset = file.require_group("parameters").create_dataset(key, data="auto" if value is None else value)
+            dataset.attrs["auto"] = getattr(self.parameters, key) is None
             dataset.attrs["unit"] = self.parameters.unit(key)
             dataset.attrs["meaning"] = self.parameters.__fields__[key].field_info.description or ""
         file.require_group("provenance").attrs.update(self.provenance)
@@ -222,6 +222,24 @@ class RunFolder:
             self.series.close()
         if self.lock is not None:
             self.lock.close()
+
+
+def place_of(out):
+    """Return the absolute path of the run folder that `out` names; UsageError where it can name none."""
+    given = f"out={one_line(out)}"
+    try:
+        place = Path(out).expanduser().absolute()
+    except RuntimeError:
+        raise UsageError(
+            f"{given} begins with ~ and the name of no user; give another path, or ./~… for such a name"
+        ) from None
+    if place.name in ("", ".."):
+        raise UsageError(f"{given} is not the name of a run folder; give one below it")
+    if (length := len(os.fsencode(place.name))) > LONGEST_NAME:
+        raise UsageError(
+            f"{given} is a name of {length} bytes; at most {LONGEST_NAME} are possible, give a shorter one"
+        )
+    return place
 
 
 def plain(quantities):

@@ -62,11 +62,19 @@ def difference(run):
         for key, value in run.parameters.identity().items():
             if key not in run.parameters.__fields__:  # what a file that a parameter names holds
                 continue
-            there = file[f"parameters/{key}"][()] if f"parameters/{key}" in file["/"] else "nothing"
-            there = there.decode() if isinstance(there, bytes) else there
-            if there != ("auto" if value is None else value):
-                return f" ({key}={there} there, {key}={value} asked for)"
+            there, asked = stored_value(file, key), "auto" if value is None else value
+            if asked not in there:
+                return f" ({key}={there[0]} there, {key}={asked} asked for)"
     return " (a file that they name has changed)"
+
+
+def stored_value(file, key):
+    """Return the value of a parameter in an open `run.h5`; behind it "auto" where it was taken for that."""
+    if f"parameters/{key}" not in file["/"]:
+        return ("nothing",)
+    dataset = file[f"parameters/{key}"]
+    value = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
+    return (value, "auto") if dataset.attrs.get("auto", False) else (value,)
 
 
 def is_alive(part):

@@ -57,6 +57,15 @@ def place(tmp_path):
     return Place(tmp_path)
 
 
+def test_a_campaign_runs_where_the_path_has_braces_and_blanks(tmp_path):
+    folder = tmp_path / "{name} 'of' {x!r}"
+    folder.mkdir()
+    place = Place(folder)
+    code, words = place.run("  a: {seed: 31}\n")
+    assert code == 0 and "0 of 1 runs are there already" in words
+    assert place.folder("seed_31")
+
+
 def test_failures_are_told_killed_runs_resume_and_finished_runs_are_not_repeated(place):
     sweeps = "  a: {seed: 11}\n  b: {seed: 12, ask: KILL}\n  c: {seed: 13, fault: study}\n"
     code, words = place.run(sweeps, "--cores", "2")

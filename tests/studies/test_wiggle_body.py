@@ -24,7 +24,8 @@ def wiggle(tmp_path_factory):
 
 
 def small(wiggle, **changes):
-    values = dict(width=30, height=30, depth=16, amplitude=1.5, period=2, dt_factor=5, rest=1e-2, shape="disk")
+    values = dict(width=30, height=30, depth=16, amplitude=1.5, period=2, dt_factor=5, rest=1e-2)
+    values.update(shape="disk", lid_pressure=0)
     return wiggle.WiggleParameters(**{**values, **changes})
 
 

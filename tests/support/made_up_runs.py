@@ -9,7 +9,17 @@ import numpy as np
 
 THETA = (np.arange(24) + 0.5) * np.pi / 12 - np.pi
 KEYS = dict(
-    phi=0.352, v0=1.0, spin_ratio=0.0, mu=0.5, width=300.0, height=200.0, travel=300.0, dt_factor=1.0, fields=0, seed=1
+    phi=0.352,
+    v0=1.0,
+    spin_ratio=0.0,
+    mu=0.5,
+    width=300.0,
+    height=200.0,
+    travel=300.0,
+    dt_factor=1.0,
+    fields=0,
+    seed=1,
+    intruder_diameter=5.0,
 )
 KAPPA = {0.135: 1.0, 0.352: 0.95, 0.585: 0.93, 0.818: 0.90}
 
@@ -43,8 +53,11 @@ def angles(keys, noise):
 
 
 def fields(keys, noise):
-    """Return fields with a wake that bends and widens, hottest on the side that the paper names; SI units, one phase."""
-    x = np.arange(-12, 12, 0.25) + 0.125
+    """Return fields with a wake that bends and widens, hottest on the side that the paper names; SI units, one phase.
+
+    All lengths grow with the body's diameter, 5 d in what follows.
+    """
+    x, scale = np.arange(-12, 12, 0.25) + 0.125, keys["intruder_diameter"] / 5
     X, Y = np.meshgrid(x, x)
     spin = keys["spin_ratio"]
     side = {0.0: 0.0, 1.0: -1.0, 10.0: 1.0}[spin]
@@ -57,7 +70,10 @@ def fields(keys, noise):
     velocity[empty], heat[empty] = np.nan, np.nan
     arrays = dict(area_fraction=np.where(empty, 0.0, keys["phi"]), velocity=velocity, temperature=heat)
     return dict(
-        x=0.02 * x, y=0.02 * x, samples=np.array([1000]), **{name: array[None] for name, array in arrays.items()}
+        x=0.02 * scale * x,
+        y=0.02 * scale * x,
+        samples=np.array([1000]),
+        **{name: array[None] for name, array in arrays.items()},
     )
 
 

@@ -1,14 +1,20 @@
 """Plans of campaigns: what a YAML becomes, names that find their runs again, and what is refused before anything runs."""
 
+import json
+import os
 import subprocess
 from pathlib import Path
 
 import pytest
+from made_up_runs import KEYS, write_run
 
 from graindrive.campaign import cost, execution
 from graindrive.campaign.__main__ import main, read_arguments
 from graindrive.campaign.plan import read_plan
 from graindrive.errors import UsageError
+from graindrive.postproc.campaign import report, results
+from graindrive.postproc.campaign.folder import Campaign
+from graindrive.postproc.reader import RunError
 
 TOY = Path(__file__).parents[1] / "faults" / "toy_study.py"
 GOOD = f"study: {TOY}\ncommon: {{scale: smoke, steps: 20}}\nsweeps:\n  a: {{seed: [1, 2]}}\n"
@@ -94,6 +100,42 @@ def test_switches_and_empty_values_become_the_studys_words(plan):
         (("[1, 2]", "[]"), "seed has no values; give at least one"),
         (("[1, 2]", f"{list(range(100_001))}"), "sweep a makes more than 100000 runs"),
         (("{seed: [1, 2]}", "5"), "sweep a must be keys with values or lists of values, got 5"),
+        (("{seed: [1, 2]}", "[]"), "sweep a has no grid; give keys with values"),
+        (("{seed: [1, 2]}", "{}"), "sweep a has an empty grid; give at least one key with a value"),
+        (("{seed: [1, 2]}", "[{seed: 1}, {}]"), "sweep a has an empty grid"),
+        (("{seed: [1, 2]}", ""), "sweep a must be keys with values or lists of values, got None"),
+        (("a: {seed", "a b: {seed"), "the name of a sweep must be one word, got 'a b'"),
+        (("a: {seed", "1: {seed"), "line 4: a key must be a word, got 1; put quotes around it"),
+        (("steps: 20", "period: yes"), "period=yes is not allowed: period is a number"),
+        (("steps: 20", "period: true"), "period=true is not allowed: period is a number"),
+        (("steps: 20", "period: '4'"), "period='4' is not allowed: period is a number"),
+        (("steps: 20", "period: 1:30"), "period=1:30 is not allowed"),
+        (("steps: 20", "period: .inf"), "period=.inf is not allowed"),
+        (("steps: 20", "period: 1e999"), "period=inf is not allowed"),
+        (("steps: 20", "period: 2026-01-02"), "period=2026-01-02 is not allowed"),
+        (("steps: 20", "period: 2026-99-99"), "period=2026-99-99 is not allowed"),
+        (("steps: 20", f"period: {'9' * 5000}"), "line 2: 9{59}… is no int that can be read"),
+        (("steps: 20", f"period: {'9' * 4000}"), "period=9{59}… is not allowed"),
+        (("steps: 20", "period: !!timestamp 2026-99-99"), "is not YAML: could not determine a constructor"),
+        (("steps: 20", "period: !!python/name:os.system x"), "is not YAML: could not determine a constructor"),
+        (("steps: 20", "period: !!float soon"), "soon is no float that can be read"),
+        (("steps: 20", "period: !!binary 4"), "is not YAML"),
+        (("steps: 20", "<<: {steps: 20}"), "no key '<<'"),
+        (("[1, 2]", "1:30"), "seed=1:30 is not allowed: seed is a whole number"),
+        (("[1, 2]", "true"), "seed=true is not allowed: seed is a whole number"),
+        (("[1, 2]", "1.5"), "seed=1.5 is not allowed: seed is a whole number"),
+        (("steps: 20", "vtk: yes"), "vtk=yes is not allowed: vtk is 0 or 1"),
+        (("steps: 20", "vtk: 2"), "vtk=2 is not allowed: vtk is 0 or 1"),
+        (("steps: 20", "vtk: 1.0"), "vtk=1.0 is not allowed: vtk is 0 or 1"),
+        (("steps: 20", "fault: true"), "fault=true is not allowed: fault is one of none"),
+        (("steps: 20", "'steps=3': 20"), "there is no key 'steps=3'"),
+        (("steps: 20", "' steps': 20"), "there is no key 'steps'; did you mean steps"),
+        (("steps: 20", f"steps: {'[' * 5000}{']' * 5000}"), "is nested too deeply"),
+        (("[1, 2]", "&a [*a]"), "seed must be a number, a word or a switch"),
+        (("sweeps:", "sweeps: 1\nsweeps:"), "sweeps is given twice"),
+        (("  a: {", "  a: {seed: 1}\n  a: {"), "line 5: a is given twice"),
+        (("common:", "report: [magnus]\ncommon:"), "report must be the name of a report"),
+        (("common:", "---\ncommon:"), "is not YAML: expected a single document"),
         (("steps: 20", "steps: 20, steps: 30"), "steps is given twice"),
         (("{seed: [1, 2]}", "{seed: [1, 2"), "is not YAML"),
         ((f"study: {TOY}", "study: wigle"), r"no study 'wigle'; did you mean wiggle\?"),
@@ -115,6 +157,8 @@ def test_a_bad_file_is_refused_with_the_place_the_value_and_the_way_out(plan, ch
     "study, values, words",
     [
         ("magnus", "travel: [60, 300]", "travel=300 d is longer than the channel"),
+        ("magnus", "width: [60, 60.5], travel: 40", "width must be a whole number of wall disks, got 60.5; round it"),
+        ("wiggle", "lid_pressure: [auto, 1e6]", "weighs 1e[+]06 rho d g, but grains bear"),
         ("wiggle", "amplitude: [1, 60]", "width=120"),
         ("wiggle", "period: [4, 1e-9]", "period=1e-09"),
     ],
@@ -122,6 +166,51 @@ def test_a_bad_file_is_refused_with_the_place_the_value_and_the_way_out(plan, ch
 def test_values_that_do_not_go_together_are_refused_before_anything_runs(plan, study, values, words):
     with pytest.raises(UsageError, match=f"campaign.yaml: sweep a: .*{words}"):
         plan(f"study: {study}\nsweeps:\n  a: {{scale: demo, {values}}}\n")
+
+
+# Lists that hold each other ten times over: 10^30 values on one line.
+LAUGHS = "[&a0 [ha], " + ", ".join(f"&a{n} [{', '.join(10 * [f'*a{n - 1}'])}]" for n in range(1, 31)) + ", *a30]"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        (str(TOY), LAUGHS),
+        ("{scale: smoke, steps: 20}", LAUGHS),
+        ("20", LAUGHS),
+        ("{seed: [1, 2]}", LAUGHS),
+        ("[1, 2]", LAUGHS),
+    ],
+)
+def test_lists_that_grow_beyond_all_bounds_get_one_short_line(plan, change):
+    with pytest.raises(UsageError, match="must be") as refusal:
+        plan(GOOD.replace(*change))
+    assert len(str(refusal.value)) < 500
+
+
+def test_runs_that_many_grids_share_are_counted_before_they_are_parsed(plan):
+    with pytest.raises(UsageError, match="makes more than 100000 runs"):
+        plan(GOOD.replace("{seed: [1, 2]}", f"[&g {{seed: {list(range(1000))}}}, {', '.join(100 * ['*g'])}]"))
+
+
+def test_numbers_are_read_as_a_person_reads_them(plan):
+    found = plan(GOOD.replace("[1, 2]", "[010, 1e1, 11]").replace("steps: 20", "steps: 2.0e+1, period: 1e-9, vtk: 1"))
+    assert [run.parameters.seed for run in found.runs] == [10, 11]  # YAML 1.1 has 8 for 010, and text for 1e-9
+    assert found.runs[0].parameters.period == 1e-9 and found.runs[0].parameters.vtk is True
+
+
+@pytest.mark.parametrize("kind", ["folder", "pipe", "large", "long name"])
+def test_what_is_no_file_of_a_plan_is_not_read(tmp_path, kind):
+    path = tmp_path / ("x" * 300 if kind == "long name" else "plan.yaml")
+    if kind == "folder":
+        path.mkdir()
+    elif kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "large":
+        path.touch()
+        os.truncate(path, 10**12)
+    with pytest.raises(UsageError, match="not a file|more than 4000000|cannot be read"):
+        read_plan(path)
 
 
 @pytest.mark.parametrize("content", ["", "- 1\n", "\0", "{a: b}: 3\n"])
@@ -194,3 +283,54 @@ def test_durations_in_words():
         "24 h",
         "12 days",
     ]
+
+
+@pytest.mark.parametrize("place", ["done/{run}", "campaign.json", "done", ".lock"])
+def test_what_is_in_the_way_of_a_campaign_is_named(plan, tmp_path, monkeypatch, capsys, place):
+    run = plan(GOOD).runs[0].name
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "campaign" / place.format(run=run)
+    path.parent.mkdir(parents=True)
+    if place == "done":
+        path.touch()
+    else:
+        path.mkdir()
+    assert main(["campaign.yaml"]) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert str(path) in said or str(tmp_path / "campaign") in said and "cannot be written" in said
+
+
+def test_a_table_that_is_a_folder_and_a_log_that_is_one_are_named(plan, tmp_path, monkeypatch, capsys):
+    run = plan(GOOD).runs[0].name
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "campaign" / "logs" / f"{run}.log").mkdir(parents=True)
+    assert main(["campaign.yaml", "--report"]) == 1
+    assert "its log cannot be read (Is a directory)" in capsys.readouterr().err
+    (tmp_path / "campaign" / "table.csv").unlink()
+    (tmp_path / "campaign" / "table.csv").mkdir()
+    assert main(["campaign.yaml", "--report"]) == 2
+    assert "table.csv cannot be written (Is a directory); move it away" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("content", ["", "5", "[1]", "{}", "\xff", "[" * 100_000])
+def test_a_damaged_plan_in_a_campaigns_folder_is_one_line(tmp_path, content):
+    (tmp_path / "campaign.json").write_text(content, encoding="latin-1")
+    with pytest.raises(RunError, match="campaign.json") as refusal:
+        Campaign.of(tmp_path)
+    assert "\n" not in str(refusal.value)
+
+
+def test_results_find_a_campaign_whose_name_has_blanks_again(tmp_path):
+    target = tmp_path / "RESULTS.md"
+    target.write_text("".join(results.SECTION.format(name=name, text="## text") for name in ("a b", "c")))
+    assert results.stored_sections(target) == {"a b": "## text", "c": "## text"}
+
+
+def test_a_table_of_words_and_numbers_is_sorted_and_told(tmp_path):
+    runs = {"one": "auto", "two": 60.0}
+    for name, travel in runs.items():
+        write_run(tmp_path, name, dict(KEYS, travel=travel), {"drag": 1.0}, {})
+    plan = dict(name="mixed", file="x.yaml", study="magnus", report="", runs=[dict(name=n, sweeps=["a"]) for n in runs])
+    (tmp_path / "campaign.json").write_text(json.dumps(plan))
+    table = Campaign.of(tmp_path).table
+    assert list(table["travel"]) == [60.0, "auto"] and report.values(table["travel"]) == "60, auto"

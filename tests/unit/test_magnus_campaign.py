@@ -13,6 +13,7 @@ from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.magnus import campaign as magnus_campaign
 from graindrive.postproc.magnus.claims import drag_claims, speed_claims
+from graindrive.postproc.magnus.wake import wake_claims
 from graindrive.postproc.reader import RunError
 
 SPEEDS = dict(phi=[0.352, 0.818], v0=[0.25, 0.5, 1.0, 2.0])
@@ -67,6 +68,23 @@ def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder):
     assert {p.stem for p in (folder / "figures").iterdir()} == names
     assert all((folder / "figures" / f"{name}.png").stat().st_size > 10_000 for name in names)
     assert "scripts/campaign campaigns/x.yaml" in report and "core-seconds" in report and "a processor" in report
+
+
+def test_the_wake_counts_in_radii_of_the_body(folder, tmp_path):
+    found = {}
+    for diameter in (5.0, 10.0):
+        place = tmp_path / f"{diameter:g}"
+        place.mkdir()
+        sweep = dict(SWEEPS["fields"], intruder_diameter=[diameter])
+        campaign = Campaign.of(make_campaign(place, MadeUpMagnus(), dict(fields=sweep)))
+        found[diameter] = wake_claims(campaign, campaign.sweep("fields"))
+    core, wider, bent, *hot = zip(*found.values())
+    # The same fields at twice the scale: lengths double, shares and directions stay, but for bins at the edges of a window.
+    assert core[0].measured.value == core[1].measured.value == 0
+    assert wider[1].measured.value == pytest.approx(2 * wider[0].measured.value, rel=1e-9)
+    assert bent[1].measured.value == pytest.approx(2 * bent[0].measured.value, rel=1e-9)
+    for small, large in hot:
+        assert large.measured.value == pytest.approx(small.measured.value, abs=0.05)  # smoothing stays 0.5 d wide
 
 
 def test_a_drag_that_does_not_rise_with_spin_is_reported(folder):

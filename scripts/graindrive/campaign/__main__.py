@@ -44,16 +44,17 @@ def campaign(options):
         raise UsageError(f"cores={options.cores} must be at least 1; leave --cores out for all processors")
     plan = read_plan(options.file)
     folder = (options.out or Path(plan.name)).absolute()
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(f"out={folder} is a file; give --out a folder")
-    if options.dry_run:
-        return tell(folder, plan, options.cores)
-    with signals.handled(), execution.opened(folder, plan) as lock:
-        if not options.report:
-            make_runs(folder, plan, options, lock)
-        report = write_report(folder)
-    print(f"{NAME}: see {report}", file=sys.stderr)
-    return tell_failures(folder, plan)
+    with execution.nothing_in_the_way(folder):
+        if folder.exists() and not folder.is_dir():
+            raise UsageError(f"out={folder} is a file; give --out a folder")
+        if options.dry_run:
+            return tell(folder, plan, options.cores)
+        with signals.handled(), execution.opened(folder, plan) as lock:
+            if not options.report:
+                make_runs(folder, plan, options, lock)
+            report = write_report(folder)
+        print(f"{NAME}: see {report}", file=sys.stderr)
+        return tell_failures(folder, plan)
 
 
 def make_runs(folder, plan, options, lock):

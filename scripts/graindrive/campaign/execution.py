@@ -1,6 +1,7 @@
 """Carrying out a plan: its folder, Snakemake as a child that a signal ends cleanly, and what came of each run."""
 
 import contextlib
+import errno
 import fcntl
 import json
 import os
@@ -13,6 +14,19 @@ from ..errors import Interrupted, UsageError
 from ..run_remains import stored_digest
 
 SNAKEFILE = Path(__file__).with_name("Snakefile")
+IN_THE_WAY = {getattr(errno, f"E{name}") for name in "ISDIR NOTDIR EXIST ACCES PERM ROFS NAMETOOLONG LOOP".split()}
+
+
+@contextlib.contextmanager
+def nothing_in_the_way(folder):
+    """Turn the system's refusal to write a file of the campaign's `folder` into a UsageError that names the file."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in IN_THE_WAY:
+            raise
+        place = error.filename2 or error.filename or folder
+        raise UsageError(f"{place} cannot be written ({error.strerror}); move it away, or give another --out") from None
 
 
 @contextlib.contextmanager
@@ -66,6 +80,8 @@ def set_marks(folder, plan):
     names = {run.name for run in missing(folder, plan)}
     for run in plan.runs:
         mark = folder / "done" / run.name
+        if mark.is_dir():
+            raise UsageError(f"{mark} is a folder where a file belongs; move it away, or give another --out")
         mark.unlink(missing_ok=True) if run.name in names else mark.touch()
 
 
@@ -136,4 +152,6 @@ def last_words(log):
         lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
     except FileNotFoundError:
         lines = []
+    except OSError as error:
+        return f"its log cannot be read ({error.strerror})"
     return lines[-1] if lines else "it has not been started"

@@ -18,13 +18,12 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import yaml
-
 from .. import headless
-from ..command_line import nearest, parse
+from ..command_line import nearest, parse, refuse, require_key
 from ..errors import UsageError, one_line
+from ..parameters import plain_type
+from .plan_file import read_plan_file, shortened
 
-KEYS = ("study", "report", "common", "sweeps")
 OWN_KEYS = {  # of a study, which a campaign sets itself
     "out": "the campaign names its run folders",
     "resume": "a campaign always resumes",
@@ -64,8 +63,7 @@ class Plan:
 def read_plan(path):
     """Return the checked `Plan` of the campaign file `path`; UsageError names the first thing that is wrong."""
     path = Path(path)
-    content = read_yaml(path)
-    check_keys(path, content)
+    content = read_plan_file(path)
     study_file = find_study(path, content["study"])
     report = content.get("report") or ""
     check_report(path, report, content["sweeps"])
@@ -81,46 +79,7 @@ def named_in_house(path):
     return str(path.resolve().relative_to(top)) if path.resolve().is_relative_to(top) else path.name
 
 
-# ---- the file --------------------------------------------------------------------------------------------------------
-
-
-class StrictLoader(yaml.SafeLoader):
-    """YAML whose mappings may not name a key twice: the first value would be lost without a word."""
-
-    def construct_mapping(self, node, deep=False):
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise UsageError(f"line {node.start_mark.line + 1}: {one_line(key)} is given twice; keep one")
-        return super().construct_mapping(node, deep)
-
-
-def read_yaml(path):
-    """Return the mapping that the file holds."""
-    try:
-        content = yaml.load(path.read_text(encoding="utf-8"), StrictLoader)  # noqa: S506 (derived from SafeLoader)
-    except UsageError as error:
-        raise UsageError(f"{path}: {error}") from None
-    except OSError as error:
-        raise UsageError(f"{path} cannot be read ({error.strerror}); give the YAML file of a campaign") from None
-    except (yaml.YAMLError, UnicodeError, TypeError) as error:
-        raise UsageError(f"{path} is not YAML: {one_line(error, 200)}") from None
-    if not isinstance(content, dict):
-        raise UsageError(f"{path} must hold the keys {', '.join(KEYS)}, got {one_line(content)}")
-    return content
-
-
-def check_keys(path, content):
-    """Refuse keys that are unknown, missing or of the wrong kind."""
-    for key in content:
-        if key not in KEYS:
-            hint = nearest(key, KEYS, "did you mean ", "? ")
-            raise UsageError(f"{path}: there is no key '{one_line(key)}'; {hint}allowed: {' '.join(KEYS)}")
-    for key, kind, words in (("study", str, "the name of a study"), ("sweeps", dict, "names with grids of values")):
-        if not isinstance(content.get(key), kind) or not content[key]:
-            raise UsageError(f"{path}: {key} must be {words}, got {one_line(content.get(key))}")
-    if not isinstance(content.get("common") or {}, dict):
-        raise UsageError(f"{path}: common must be keys of the study with values, got {one_line(content['common'])}")
+# ---- study and report ------------------------------------------------------------------------------------------------
 
 
 def find_study(path, name):
@@ -179,31 +138,45 @@ def declared(study_file):
 
 def planned_runs(path, content, study):
     """Return the `PlannedRun`s of all sweeps, each run once however many sweeps need it."""
-    runs = {}
-    for sweep, grids in content["sweeps"].items():
-        for values in crossed(f"{path}: sweep {one_line(sweep)}", grids, content.get("common") or {}):
-            run = planned_run(f"{path}: sweep {one_line(sweep)}", values, study)
+    runs, common = {}, content.get("common") or {}
+    for sweep, place, grid in grids_of(path, content["sweeps"], common):
+        for values in crossed(grid):
+            run = planned_run(place, values, study)
             known = runs.setdefault(run.name, run)
-            known.sweeps += [] if sweep in known.sweeps else [str(sweep)]
-            if len(runs) > MOST_RUNS:
-                raise UsageError(f"{path}: sweep {one_line(sweep)} makes more than {MOST_RUNS} runs; give fewer values")
+            known.sweeps += [] if sweep in known.sweeps else [sweep]
     return list(runs.values())
 
 
-def crossed(place, grids, common):
-    """Yield a dict of single values for each combination of the lists in a grid, or in each of a list of grids."""
-    for grid in grids if isinstance(grids, list) else [grids]:
-        if not isinstance(grid, dict):
-            raise UsageError(f"{place} must be keys with values or lists of values, got {one_line(grid)}")
-        merged = {**common, **grid}
-        axes = [value if isinstance(value, list) else [value] for value in merged.values()]
-        for key, axis in zip(merged, axes):
-            if not axis:
-                raise UsageError(f"{place}: {one_line(key)} has no values; give at least one")
-        if math.prod(map(len, axes)) > MOST_RUNS:  # before each is parsed, which would take minutes
-            raise UsageError(f"{place} makes more than {MOST_RUNS} runs; give fewer values")
-        for combination in itertools.product(*axes):
-            yield dict(zip(merged, combination))
+def grids_of(path, sweeps, common):
+    """Return [(sweep, its place in words, {key: list of values})] of all grids, checked for what they hold and how many runs."""
+    found = []
+    for sweep, grids in sweeps.items():
+        place = f"{path}: sweep {one_line(sweep)}"
+        if grids == []:
+            raise UsageError(f"{place} has no grid; give keys with values")
+        for grid in grids if isinstance(grids, list) else [grids]:
+            found.append((sweep, place, {**lists_of(place, common), **lists_of(place, grid)}))
+            if not grid:
+                raise UsageError(f"{place} has an empty grid; give at least one key with a value")
+            if sum(math.prod(map(len, axes.values())) for *_, axes in found) > MOST_RUNS:  # parsing takes minutes
+                raise UsageError(f"{place} makes more than {MOST_RUNS} runs; give fewer values")
+    return found
+
+
+def lists_of(place, grid):
+    """Return a mapping with each value as a list; UsageError if `grid` is none, or a list is empty."""
+    if not isinstance(grid, dict):
+        raise UsageError(f"{place} must be keys with values or lists of values, got {shortened(grid)}")
+    for key, values in grid.items():
+        if values == []:
+            raise UsageError(f"{place}: {one_line(key)} has no values; give at least one")
+    return {key: value if isinstance(value, list) else [value] for key, value in grid.items()}
+
+
+def crossed(axes):
+    """Yield a dict of single values for each combination of the lists in `axes`."""
+    for combination in itertools.product(*axes.values()):
+        yield dict(zip(axes, combination))
 
 
 def planned_run(place, values, study):
@@ -212,7 +185,7 @@ def planned_run(place, values, study):
         if key in values:
             raise UsageError(f"{place}: {key} is not for campaigns: {reason}; leave it out")
     try:
-        arguments = [argument(key, value) for key, value in values.items()]
+        arguments = [argument(study.parameters, key, value) for key, value in values.items()]
         p = parse(study.parameters, arguments, study.presets, study=study.name, defaults=study.defaults, environment={})
         study.check(p)
     except UsageError as error:
@@ -220,13 +193,39 @@ def planned_run(place, values, study):
     return PlannedRun(run_name(p, study), arguments, p)
 
 
-def argument(key, value):
-    """Return a YAML scalar as the study's command line takes it."""
-    if isinstance(value, (dict, list, tuple)):
-        raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {one_line(value)}")
-    if value is None:
-        value = "auto"
+def argument(parameters, key, value):
+    """Return a value of the file as the study's command line takes it; UsageError where it is of another kind than its key."""
+    require_key(parameters, key)
+    field = parameters.__fields__[key]
+    if isinstance(value, (dict, list)):
+        raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {shortened(value)}")
+    if value is None or (field.allow_none and value == "auto"):
+        return f"{key}=auto"
+    if not is_of_kind(plain_type(field), value):
+        refuse(field, f"'{value}'" if isinstance(value, str) and is_number(value) else as_written(value))
     return f"{key}={int(value) if isinstance(value, bool) else value}"
+
+
+def is_of_kind(kind, value):
+    """True if a value of the file is what a key of that kind takes: bool, int, float, str, or None for a choice of words."""
+    if kind is bool:
+        return isinstance(value, (bool, int)) and value in (0, 1)
+    if kind in (int, float):
+        return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return isinstance(value, str)
+
+
+def is_number(text):
+    """True for text that would be a number without its quotes."""
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def as_written(value):
+    """Return a value as it stands in the file."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def run_name(p, study):
@@ -234,9 +233,12 @@ def run_name(p, study):
 
     It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again.
     """
-    usual = {k: f.default for k, f in study.parameters.__fields__.items()} | study.defaults | study.presets[p.scale]
-    identity = {key: value for key, value in p.dict().items() if key in p.identity()}
-    told = [f"{key}_{shortly(value)}" for key, value in sorted(identity.items()) if value != usual.get(key)]
+    usual = study.parameters(**{**study.defaults, **study.presets[p.scale], "scale": p.scale}).identity()
+    told = [
+        f"{key}_{shortly(value)}"
+        for key, value in sorted(p.identity().items())
+        if key in study.parameters.__fields__ and value != usual.get(key)
+    ]
     text = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in "-".join([study.name, *told]))
     return f"{text[: LONGEST_NAME - 13]}-{p.digest()}"
 
