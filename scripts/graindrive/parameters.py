@@ -3,10 +3,11 @@
 import hashlib
 import json
 import math
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import BaseModel, Field, validator
 
+EXPORTS = ("vtk", "xyz", "lammps")  # for ParaView; for OVITO and ASE; for LAMMPS and OVITO
 LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 
 
@@ -29,6 +30,8 @@ class StudyParameters(BaseModel):
     whose ValueError is one plain sentence.
     """
 
+    unit_system: ClassVar[str] = ""  # of postproc.quantities, SI or GRAIN; empty where a study has units of its own
+
     scale: Literal["smoke", "demo", "paper"] = quantity(
         "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
     )
@@ -39,7 +42,8 @@ class StudyParameters(BaseModel):
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
     redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
-    vtk: bool = quantity(False, "-", "also write files for ParaView", identity=False)
+    vtk: bool = quantity(False, "-", "also write files for ParaView, as export=vtk", identity=False)
+    export: str = quantity("", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False)
 
     class Config:
         extra = "forbid"
@@ -53,6 +57,16 @@ class StudyParameters(BaseModel):
         if plain_type(field) is int and isinstance(value, float) and not value.is_integer():
             raise ValueError("not whole")
         return value
+
+    @validator("export")
+    def _known_formats(cls, value):
+        known_formats(value)
+        return value
+
+    @property
+    def exports(self):
+        """Formats of EXPORTS in which the run's frames are written."""
+        return tuple(name for name in EXPORTS if name in known_formats(self.export) or (name == "vtk" and self.vtk))
 
     @classmethod
     def unit(cls, key):
@@ -82,6 +96,15 @@ class StudyParameters(BaseModel):
         from .command_line import parameters_or_exit
 
         return parameters_or_exit(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
+
+
+def known_formats(text):
+    """Return the formats that a comma list names; ValueError for one that EXPORTS does not have."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in EXPORTS:
+            raise ValueError(f"export is a comma list of {', '.join(EXPORTS)}, got {name!r}")
+    return names
 
 
 def plain_type(field):
