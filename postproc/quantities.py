@@ -59,7 +59,9 @@ QUANTITIES = {
         ),
         **of("s", wall_s="wall time of the run, interrupted parts included"),
         **of("", shape="wiggle: the key"),
-        **of("length", amplitude="wiggle: the key A; a velocity with drive=velocity", y_final="rise of the body in all"),
+        **of(
+            "length", amplitude="wiggle: the key A; a velocity with drive=velocity", y_final="rise of the body in all"
+        ),
         **of("time", period="wiggle: the key T", rise_until="end of the average of rise_rate: arrest or the run's end"),
         **of("velocity", rise_rate="V_y, mean velocity upwards from a tenth of the run to arrest"),
         **of(
@@ -84,7 +86,11 @@ QUANTITIES = {
             model_kappa="L/D by Eq. 15 of the model with the measured kappa",
             steady="1 if the averages' window was found steady, else 0",
         ),
-        **of("force", drag_std="standard deviation of the drag in time", lift_std="standard deviation of the lift in time"),
+        **of(
+            "force",
+            drag_std="standard deviation of the drag in time",
+            lift_std="standard deviation of the lift in time",
+        ),
         **of("d", steady_from="travel at which the averages begin", steady_travel="travel that the averages cover"),
     },
     "series": {
@@ -98,7 +104,9 @@ QUANTITIES = {
         **of("-", phi="Magnus: area fraction between the walls, without the body"),
         **of("force", normal_x="Magnus: normal forces on the body, along x"),
         **of("torque", torque="Magnus: on the body, counter-clockwise"),
-        **of("force squared", fx_var="Magnus: variance of fx within the block", fy_var="Magnus: of fy within the block"),
+        **of(
+            "force squared", fx_var="Magnus: variance of fx within the block", fy_var="Magnus: of fy within the block"
+        ),
         **of("-", contacts_var="Magnus: variance of the number of contacts within the block"),
     },
     "frames/NNNN": {
@@ -145,14 +153,18 @@ QUANTITIES = {
         **of("-", samples="moments averaged, by phase", area_fraction="area of disks over area"),
         **of("density", density="mass over area"),
         **of("velocity", velocity="mean velocity (x, y); nan where no grain was"),
-        **of("temperature", temperature="granular temperature, half the mean square of v - <v>; nan where no grain was"),
+        **of(
+            "temperature", temperature="granular temperature, half the mean square of v - <v>; nan where no grain was"
+        ),
         **of(
             "stress",
             pressure="half the trace of the stress, contacts and motion",
             contact_stress="stress by contacts, first index the force's, second the branch's; > 0 in compression",
             kinetic_stress="stress by motion about the mean velocity",
         ),
-        **of("", kernel="attribute: the averager's kernel", relative="attribute: velocities are relative to the body's"),
+        **of(
+            "", kernel="attribute: the averager's kernel", relative="attribute: velocities are relative to the body's"
+        ),
         **of("length", spacing="attribute: of the bins", width="attribute: w of the kernel"),
         **of(
             "-",

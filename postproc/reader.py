@@ -40,12 +40,16 @@ class Frame:
         return np.hypot(self.grains["vx"], self.grains["vy"])
 
     def disks(self):
-        """Return all disks, grains and base first, then those of the driven body with the role BEAD: a dict of arrays."""
-        beads = {name: self.intruder[name] for name in self.grains if name in self.intruder}
+        """Return all disks, grains and base first, then those of the driven body with the role BEAD: a dict of arrays.
+
+        Where the run did not store ids they are the rows.
+        """
+        grains = {"id": np.arange(len(self.grains["x"])), **self.grains, "role": self.role}
+        beads = {name: self.intruder[name] for name in grains if name in self.intruder}
         if not beads:
-            return {**self.grains, "role": self.role}
+            return grains
         beads["role"] = np.full(len(beads["x"]), BEAD)
-        return {name: np.concatenate([column, beads[name]]) for name, column in {**self.grains, "role": self.role}.items()}
+        return {name: np.concatenate([column, beads[name]]) for name, column in grains.items()}
 
     def contact_ends(self):
         """Return where the lines of the contacts begin and end, two arrays (n, 2).

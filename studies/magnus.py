@@ -83,7 +83,9 @@ class MagnusParameters(intruder.BodyParameters):
     wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing")
     field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
-    frames: int = quantity(1, "-", "pictures of the channel that are kept, evenly in time, the last at the end", ge=1, le=9999)
+    frames: int = quantity(
+        1, "-", "pictures of the channel that are kept, evenly in time, the last at the end", ge=1, le=9999
+    )
     largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
 
     @property

@@ -46,7 +46,8 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import engines, fields, headless, intruder, lid, packing, picture, progress, recording, scene  # noqa: E402
+from graindrive import engines, fields, headless, intruder, lid, packing, picture, progress  # noqa: E402
+from graindrive import recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import quantity  # noqa: E402
@@ -83,7 +84,9 @@ class WiggleParameters(intruder.BodyParameters):
     height: float = quantity(195.0, "d", "height of the bed", gt=0)
     depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
-    frames: int = quantity(10, "-", "pictures of the bed that are kept, evenly in time from the first moment to the last", ge=1, le=9999)
+    frames: int = quantity(
+        10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999
+    )
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     orientation_deg: float = quantity(0.0, "degrees", "the shape turned counter-clockwise about its centroid")

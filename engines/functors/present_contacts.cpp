@@ -102,7 +102,7 @@ std::optional<PresentContact> contact_of(const yade::Scene& scene, std::pair<int
 	if (!(overlap >= 0) || (one.isClumpMember() && one.clumpId == two.clumpId)) return {};
 	const auto* carried = known ? dynamic_cast<const ContactPhys*>(known->phys.get()) : nullptr;
 	const auto made = carried ? nullptr
-							  : contact_phys_of(scene, radius_of(one), radius_of(two), id1, id2,
+	                          : contact_phys_of(scene, radius_of(one), radius_of(two), id1, id2,
 									contact_maker.friction_between(*one.material, *two.material));
 	const ContactPhys& phys = carried ? *carried : *made;
 	if (phys.effectiveMass == 0) return {};

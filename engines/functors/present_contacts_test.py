@@ -52,7 +52,7 @@ COLUMNS = ("overlap", "normal", "normal_force", "tangential_force", "slipping")
 @pytest.mark.parametrize("period", [None, (5, 40, 5)])
 @pytest.mark.parametrize("lever", ["radius", "contactPoint"])
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("steps", [0, 400])
+@pytest.mark.parametrize("steps", [0, 30])
 def test_the_next_step_finds_them(law, lever, period, steps):
     crowd(LAWS[law](lever), period)
     if steps:

@@ -123,7 +123,8 @@ void bind_loop()
 		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).");
 	cls.def("presentContacts", present_contacts,
-		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts with\n"
+		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
+	    "with\n"
 		"flat walls are among them, with j = -2, -3, -4, -5 for x_low, x_high, y_low, y_high.");
 	bind_checkpoint(cls);
 	bind_walls(cls);

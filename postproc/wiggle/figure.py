@@ -157,8 +157,8 @@ def draw_bed(axes, run, bed, box, norm=None):
 
 def speed_scale(speeds):
     """Return the scale of colours for speeds, arrays of one or many frames; a few fast grains do not spoil it."""
-    speeds = np.concatenate(speeds)
-    return PowerNorm(0.5, 0, max(np.quantile(speeds, 0.995), 1e-12) if len(speeds) else 1)
+    fast = np.quantile(np.concatenate(speeds), 0.995) if sum(map(len, speeds)) else 0
+    return PowerNorm(0.5, 0, fast if fast > 1e-12 else 1)  # a bed at rest has no scale of its own
 
 
 def draw_forces(axes, bed, x, y, period_x, shown, widest):

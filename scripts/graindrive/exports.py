@@ -26,13 +26,15 @@ def check(formats):
 def write(path, formats):
     """Write the frames, and for vtk the fields, of the run folder `path` in each of `formats`, each in one step.
 
-    Raises RunError for a run whose frames do not tell ids and period, as those of older versions.
+    Raises RunError for a run whose frames do not tell the box's period, as those of older versions.
     """
     check(formats)
     for name in formats:
         run = Run(path)
-        if run.frame_names and "id" not in run.frame(0).grains:
-            raise RunError(f"{path} holds frames of an older version, without ids; run it again to export them")
+        if run.frame_names and "period" not in run.labels(f"frames/{run.frame_names[0]}")[1]:
+            raise RunError(
+                f"{path} holds frames of an older version, without the box's period; run it again to export them"
+            )
         WRITERS[name](run, units_of(run))
 
 

@@ -43,7 +43,9 @@ class StudyParameters(BaseModel):
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
     redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
     vtk: bool = quantity(False, "-", "also write files for ParaView, as export=vtk", identity=False)
-    export: str = quantity("", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False)
+    export: str = quantity(
+        "", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False
+    )
 
     class Config:
         extra = "forbid"
@@ -66,7 +68,7 @@ class StudyParameters(BaseModel):
     @property
     def exports(self):
         """Formats of EXPORTS in which the run's frames are written."""
-        return tuple(name for name in EXPORTS if name in known_formats(self.export) or (name == "vtk" and self.vtk))
+        return known_formats(self.export + ",vtk" * self.vtk)
 
     @classmethod
     def unit(cls, key):
@@ -99,12 +101,12 @@ class StudyParameters(BaseModel):
 
 
 def known_formats(text):
-    """Return the formats that a comma list names; ValueError for one that EXPORTS does not have."""
+    """Return the formats that a comma list names, a tuple in the order of EXPORTS; ValueError for one that is not there."""
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
         if name not in EXPORTS:
             raise ValueError(f"export is a comma list of {', '.join(EXPORTS)}, got {name!r}")
-    return names
+    return tuple(name for name in EXPORTS if name in names)
 
 
 def plain_type(field):

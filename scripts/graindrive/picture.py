@@ -38,7 +38,10 @@ def taken(grains, base, intruder):
     period = float(O.cell.size[0]) if O.periodic else 0.0
     rows, centre = scene.rows_of(ids), np.array(O.bodies[intruder].state.pos)[:2]
     rows["x"] = in_one_image(rows["x"], n, centre, period)
-    disks = [{"id": ids[part], **{name: column[part] for name, column in rows.items()}} for part in (slice(n), slice(n, None))]
+    disks = [
+        {"id": ids[part], **{name: column[part] for name, column in rows.items()}}
+        for part in (slice(n), slice(n, None))
+    ]
     disks[0]["role"] = np.r_[np.zeros(len(grains), int), np.ones(len(base), int)]
     return Picture(disks[0], contacts(ids, rows, n), {**disks[1], **pose(intruder, centre)}, period)
 

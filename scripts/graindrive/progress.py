@@ -38,9 +38,9 @@ def require_feasible(steps):
 def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run", pauses=(), on_pause=None):
     """Run YADE `total_steps` steps, calling `on_block(steps_done)` after every `block` steps; return the `Timing`.
 
-    At `pauses`, numbers of steps that lie inside blocks, `on_pause(steps_done)` is called. A true answer of `on_block` ends the run early. `grains` is the number of grains [-] that the rate counts. Raises
-    EngineError with what an engine raised, `Interrupted` on a signal, RuntimeError if something else paused the loop,
-    UsageError for more than 1e10 steps.
+    At `pauses`, numbers of steps that lie inside blocks, `on_pause(steps_done)` is called. A true answer of `on_block` ends
+    the run early. `grains` is the number of grains [-] that the rate counts. Raises EngineError with what an engine raised,
+    `Interrupted` on a signal, RuntimeError if something else paused the loop, UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
         raise ValueError(f"steps must be >= 0 and block >= 1, got {total_steps} and {block}")

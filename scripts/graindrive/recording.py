@@ -42,7 +42,7 @@ class Frames:
     """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes those that it lacks."""
 
     def __init__(self, folder, steps, picture):
-        self.folder, self.picture = folder, picture
+        self.folder, self.picture, self.last = folder, picture, None
         self.due = sorted({int(step) for step in steps})[folder.frames :]
 
     def take_if_due(self, done):
@@ -52,13 +52,14 @@ class Frames:
 
     def take_what_is_left(self, done):
         """Take one picture more if the run ended at `done`, before all were due."""
-        if self.due:
+        if self.due and done != self.last:
             self.take(done)
 
     def take(self, done):
         """Take the next picture, of the time that `done` steps make."""
         from yade import O
 
+        self.last = done
         self.due.pop(0)
         self.folder.frame(done * O.dt, *self.picture())
 
@@ -79,8 +80,8 @@ def run_sampled(folder, steps, block, sample, *, track, frames, stage, grains, l
     """Run `steps` steps from the start of the run, calling `sample(done)` after every `block`; return the steps done.
 
     A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. `frames` are taken at their own
-    steps, inside of blocks too, and once more at the end if that came early. A checkpoint of the scene, the
-    `track` and the facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
+    steps, inside of blocks too, and once more at the end if that came early. A checkpoint of the scene, the `track` and the
+    facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
     """
     first = folder.resumed["step"] if folder.resumed else 0
     checkpoints = progress.Every(CHECKPOINT_SECONDS)

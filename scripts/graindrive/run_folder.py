@@ -67,9 +67,10 @@ class RunFolder:
         Names that `postproc.quantities` knows get their units from there.
         """
         system = self.parameters.unit_system
-        labelled, attributes = quantities.labelled(group, arrays, system), quantities.with_units(group, attributes, system)
+        arrays = quantities.labelled(group, arrays, system)
+        attributes = quantities.with_units(group, attributes, system)
         with signals.deferred():
-            run_data.write_item(self.path / "items", group, labelled, attributes)
+            run_data.write_item(self.path / "items", group, arrays, attributes)
 
     def note(self, **facts):
         """Add facts to the provenance: dt, dt_over_critical, n_grains, steps, particle_steps_per_second …"""

@@ -1,4 +1,4 @@
-"""Frames and fields of a run for ParaView: grains, contacts and the driven body as .vtp, fields as .vti, in time order as .pvd."""
+"""Frames and fields of a run for ParaView: grains, contacts, the driven body as .vtp, fields as .vti, their times as .pvd."""
 
 from pathlib import Path
 
@@ -68,7 +68,7 @@ def outline(frame, body):
 
 
 def circle_with_spoke(body):
-    """Return a single disk's outline (m, 2) about its centre: the circle, and the centre, which closes it by two spokes in one."""
+    """Return a single disk's outline (m, 2) about its centre: centre and circle, which a closed line joins by a spoke."""
     angles = np.linspace(0, 2 * np.pi, CORNERS + 1)
     radius = float(np.atleast_1d(body["bead_radius"])[0])
     return np.concatenate([[[0.0, 0.0]], radius * np.column_stack([np.cos(angles), np.sin(angles)])])

@@ -53,5 +53,7 @@ def snapshots(text):
         lines = part.splitlines()
         start = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
         bounds = [[float(word) for word in line.split()] for line in lines[start - 3 : start]]
-        found.append((int(lines[0]), bounds, np.array([[float(w) for w in line.split()] for line in lines[start + 1 :]])))
+        found.append(
+            (int(lines[0]), bounds, np.array([[float(w) for w in line.split()] for line in lines[start + 1 :]]))
+        )
     return found

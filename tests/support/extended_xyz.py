@@ -1,4 +1,4 @@
-"""A strict reader of extended XYZ, written from its specification (https://github.com/libAtoms/extxyz), for tests of what we write."""
+"""A strict reader of extended XYZ after its specification, https://github.com/libAtoms/extxyz, for tests of what is written."""
 
 import re
 

@@ -1,6 +1,7 @@
 """Frames for other programs: what formats a run writes, where, whole or not at all, and what extended XYZ says."""
 
 import extended_xyz
+import h5py
 import numpy as np
 import pytest
 from made_up_frames import PERIOD, made_up_run
@@ -40,7 +41,9 @@ def test_extended_xyz_holds_all_disks_of_all_frames_in_one_box(tmp_path, period)
         assert np.array_equal(lattice, np.diag(np.diag(lattice))), "a rectangular box"
         reach = disks["r"][:, None] * [0 if period else 1, 1, 1]
         # The box is written to 12 digits, as the places are.
-        assert (columns["pos"] - reach >= low - 1e-10).all() and (columns["pos"] + reach <= low + np.diag(lattice) + 1e-10).all()
+        assert (columns["pos"] - reach >= low - 1e-10).all() and (
+            columns["pos"] + reach <= low + np.diag(lattice) + 1e-10
+        ).all()
         assert not period or (lattice[0, 0], low[0]) == (period, 0)
         assert np.array_equal(lattice, frames[0][0]["Lattice"])
 
@@ -95,12 +98,11 @@ def test_an_unknown_format_is_refused_with_those_that_there_are(finished, given,
 
 
 def test_frames_of_older_versions_are_refused(tmp_path, capsys):
-    from graindrive.run_folder import RunFolder
-
-    with RunFolder(StudyParameters(out=str(tmp_path / "run")), study="wiggle") as folder:
-        folder.frame(0.0, {name: np.zeros(3) for name in ("x", "y", "r", "vx", "vy", "spin")})
-    assert command.main([str(tmp_path / "run"), "export=xyz"]) == 2
-    assert "frames of an older version, without ids; run it again" in capsys.readouterr().err
+    out = made_up_run(tmp_path / "run")
+    with h5py.File(out / "run.h5", "r+") as file:
+        del file["frames/0001"].attrs["period"]
+    assert command.main([str(out), "export=xyz"]) == 2
+    assert "frames of an older version, without the box's period; run it again" in capsys.readouterr().err
 
 
 def test_paraviews_files_need_vtk(monkeypatch, tmp_path):

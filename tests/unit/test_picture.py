@@ -31,9 +31,9 @@ def crowd(seed=1):
         for y in range(1, 6):
             if (x, y) not in ((0, 3), (7, 3)):
                 at = (x + 0.5 + WIDTH * rng.integers(-2, 3), y)
-                grains.append(disks.disk(*at, rng.uniform(0.505, 0.52), rng.uniform(-2, 2, 2), rng.uniform(-2, 2)))
+                grains.append(disks.disk(*at, rng.uniform(0.501, 0.52), rng.uniform(-2, 2, 2), rng.uniform(-2, 2)))
     body, _ = disks.clump([(-0.5, 0), (0.5, 0)], at=(-3 * WIDTH, 3.0), radius=0.51)
-    disks.loop(disks.hertz(gamma_n=250, gamma_t=250), friction=0.3)
+    disks.loop(disks.hertz(gamma_n=2000, gamma_t=250), friction=0.3)
     return grains, base, body
 
 
@@ -79,7 +79,9 @@ def test_both_loops_show_the_same_contacts(steps, tolerance):
     for part in ("grains", "contacts", "intruder"):
         for name, column in getattr(yades, part).items():
             np.testing.assert_allclose(getattr(fast, part)[name], column, rtol=1e-6, atol=tolerance, err_msg=name)
-    assert (yades.contacts["fn"] < 0).any() and (yades.contacts["ft"] < 0).any() and (yades.contacts["ft"] > 0).any()
+    fn, ft = yades.contacts["fn"], yades.contacts["ft"]
+    assert (fn > 0).any() and (ft < 0).any() and (ft > 0).any()
+    assert steps or (fn < 0).any(), "at first some disks separate fast"
 
 
 @pytest.mark.parametrize("steps", [0, 300])

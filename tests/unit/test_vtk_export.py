@@ -27,7 +27,15 @@ def bed(t=1.25):
     contacts = {"i": [0, 1, 0, 2], "j": [1, -1, 2, -4], "id_i": [0, 1, 0, 2], "id_j": [1, 8, 2, -4]}
     contacts.update(fn=[5.0, -6.0, 7.0, 8.0], ft=[0.5, -0.6, 0.7, 0.0], slip=[0.1, -0.2, 0.3, 0.0])
     contacts.update(px=[1.0, 1.5, 0.0, 9.5], py=[0.05, 0.6, 0.0, -0.5])
-    body = {"id": [7, 8], "x": [1.5, 1.5], "y": [2.85, 0.85], "r": [0.25, 0.25], "vx": [0, 0], "vy": [1, 1], "spin": [0, 0]}
+    body = {
+        "id": [7, 8],
+        "x": [1.5, 1.5],
+        "y": [2.85, 0.85],
+        "r": [0.25, 0.25],
+        "vx": [0, 0],
+        "vy": [1, 1],
+        "spin": [0, 0],
+    }
     body["centre"] = [1.5, 1.85]
     parts = ({name: np.array(values) for name, values in part.items()} for part in (grains, contacts, body))
     return Frame(t, *parts, period=10.0)
