@@ -18,7 +18,7 @@ py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::ve
 	for (const loop::Contact& c : contacts) {
 		i.push_back(grain_id[c.first]), slipping.push_back(c.slipping);
 		overlap.push_back(c.overlap), slip.push_back(c.slip);
-		point.insert(point.end(), { c.point_x, c.point_y, 0 });
+		point.insert(point.end(), { c.point_x - c.overlap / 2 * c.n_x, c.point_y - c.overlap / 2 * c.n_y, 0 });  // as YADE's
 		normal.insert(normal.end(), { c.n_x, c.n_y, 0 });
 		normal_force.insert(normal_force.end(), { c.normal * c.n_x, c.normal * c.n_y, 0 });
 		tangential_force.insert(tangential_force.end(), { c.friction * c.n_y, -c.friction * c.n_x, 0 });
@@ -120,11 +120,12 @@ void bind_loop()
 	cls.def("read", &GrainLoop::read,
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
 	cls.def("contacts", contacts,
-		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
-		"normal_force and tangential_force on j [N], shape (n, 3).");
+		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m] of i along z x n, shape (n,); point [m], "
+	    "the\n"
+		"middle of the overlap beside i, normal n from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
 	cls.def("presentContacts", present_contacts,
 		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
-	    "with\n"
+		"with\n"
 		"flat walls are among them, with j = -2, -3, -4, -5 for x_low, x_high, y_low, y_high.");
 	bind_checkpoint(cls);
 	bind_walls(cls);
