@@ -14,6 +14,7 @@ from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E4
 COLUMN_WIDTH = 3.4  # inches: one column of a two-column journal
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, GREY = "#000000 #E69F00 #56B4E9 #009E73 #0072B2 #D55E00 #BBBBBB".split()
+PURPLE = "#CC79A7"
 
 STYLE = {
     "font.size": 8,
@@ -65,14 +66,16 @@ def draw_grains(axes, x, y, r, *, values=None, colour=GREY, **options):
     return axes.add_collection(circles)
 
 
-def draw_chains(axes, start, end, force, *, colour=BLACK, widest=1.2, faintest=0.12):
-    """Draw contacts as lines (n, 2) to (n, 2) whose width grows with the force (n,); weak forces are left out.
+def draw_chains(axes, start, end, force, *, colour=BLACK, pulling=PURPLE, widest=1.2, faintest=0.12):
+    """Draw contacts as lines (n, 2) to (n, 2) whose width grows with the size of the force (n,); weak ones are left out.
 
-    `widest` is the width [pt] at the 99.5 % quantile of the force, above which it no longer grows; lines below the
-    fraction `faintest` of it are not drawn.
+    `colour` is that of contacts that push (force > 0), `pulling` that of the others. `widest` is the width [pt] at the
+    99.5 % quantile of the size, above which it no longer grows; lines below the fraction `faintest` of it are not drawn.
     """
-    width = widest * np.clip(force / max(np.quantile(force, 0.995), 1e-300), 0, 1) if len(force) else np.zeros(0)
+    size = np.abs(force)
+    width = widest * np.clip(size / max(np.quantile(size, 0.995), 1e-300), 0, 1) if len(size) else np.zeros(0)
     kept = width > faintest * widest
-    lines = LineCollection(np.stack([start[kept], end[kept]], axis=1), linewidths=width[kept], colors=colour)
+    colours = np.where(np.asarray(force)[kept] < 0, pulling, colour)
+    lines = LineCollection(np.stack([start[kept], end[kept]], axis=1), linewidths=width[kept], colors=colours)
     lines.set(capstyle="round", rasterized=kept.sum() > 3000)
     return axes.add_collection(lines)

@@ -1,14 +1,14 @@
 """Open a run folder: parameters, provenance, time series, frames of the bed and the intruder, as NumPy arrays with units."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
-INTRUDER = -1  # in a contact's `i` or `j`
+INTRUDER = -1  # in a contact's `i` or `j`; what is below stands for flat walls
 
 
 class RunError(Exception):
@@ -17,11 +17,17 @@ class RunError(Exception):
 
 @dataclass(frozen=True)
 class Frame:
-    """The bed at time `t` [sqrt(d/g)]: `grains` and `contacts` map names to 1D arrays, one entry per grain or contact."""
+    """The bed at time `t`: dicts of arrays by name, one entry per disk or contact, as `quantities` explains them.
+
+    `grains` are grains and base, `contacts` those of this moment, `intruder` the driven body's disks with its `centre`;
+    `period` is the box's in x, which begins at 0; 0 where it does not repeat.
+    """
 
     t: float
     grains: dict
     contacts: dict
+    intruder: dict = field(default_factory=dict)
+    period: float = 0.0
 
     @property
     def role(self):
@@ -30,8 +36,59 @@ class Frame:
 
     @property
     def speed(self):
-        """Speed of each grain, (N,) [sqrt(g d)]."""
+        """Speed of each grain, (N,)."""
         return np.hypot(self.grains["vx"], self.grains["vy"])
+
+    def disks(self):
+        """Return all disks, grains and base first, then those of the driven body with the role BEAD: a dict of arrays.
+
+        Where the run did not store ids they are the rows.
+        """
+        grains = {"id": np.arange(len(self.grains["x"])), **self.grains, "role": self.role}
+        beads = {name: self.intruder[name] for name in grains if name in self.intruder}
+        if not beads:
+            return grains
+        beads["role"] = np.full(len(beads["x"]), BEAD)
+        return {name: np.concatenate([column, beads[name]]) for name, column in grains.items()}
+
+    def contact_ends(self):
+        """Return where the lines of the contacts begin and end, two arrays (n, 2).
+
+        They join the centre of i with that image of j's centre which touches it. A side that is no disk of the frame (a
+        flat wall) has the contact point in its centre's place.
+        """
+        c = self.contacts
+        point = np.column_stack([c["px"], c["py"]])
+        disks = self.disks()
+        centres = np.column_stack([disks["x"], disks["y"]])
+        rows = {id_: row for row, id_ in enumerate(self.intruder.get("id", ()), start=len(self.grains["x"]))}
+        ends = []
+        for side in ("i", "j"):
+            row, ids = np.array(c[side], dtype=int), c.get(f"id_{side}", np.full(len(point), INTRUDER))
+            of_body = row == INTRUDER
+            row[of_body] = [rows.get(id_, INTRUDER) for id_ in ids[of_body]]
+            ends.append(np.where((row < 0)[:, None], point, centres[np.maximum(row, 0)]))
+        return tuple(self.beside(end, point) for end in ends)
+
+    def beside(self, places, point):
+        """Return that image of places (n, 2) which is next to points (n, 2)."""
+        if not self.period:
+            return places
+        winds = np.round((places[:, 0] - point[:, 0]) / self.period)
+        return np.column_stack([places[:, 0] - self.period * winds, places[:, 1]])
+
+    def place(self, points, beads):
+        """Return points (n, 2) of the driven body, about its centroid at the start, where they are now.
+
+        `beads` (m, 2) are its disks about the centroid at the start, in the order of `intruder`: what has become of them
+        tells the turn, of a single disk its `angle`.
+        """
+        now = np.column_stack([self.intruder["x"], self.intruder["y"]])
+        then, middle = beads - beads.mean(axis=0), now.mean(axis=0)
+        (x, y), (x0, y0) = (now - middle).T, then.T
+        angle = self.intruder.get("angle", np.arctan2(np.sum(x0 * y - y0 * x), np.sum(x0 * x + y0 * y)))
+        cos, sin = np.cos(angle), np.sin(angle)
+        return (np.asarray(points) - beads.mean(axis=0)) @ np.array([[cos, sin], [-sin, cos]]) + middle
 
 
 class Run:
@@ -73,9 +130,9 @@ class Run:
             raise RunError(f"{self.path} holds {len(self.frame_names)} frames; there is no frame {number}")
         with h5py.File(self.path / "run.h5", "r") as file:
             group = file["frames"][self.frame_names[number]]
-            contacts = {name: dataset[()] for name, dataset in group.get("contacts", {}).items()}
+            contacts, body = ({n: d[()] for n, d in group.get(part, {}).items()} for part in ("contacts", "intruder"))
             grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
-            return Frame(float(group.attrs["t"]), grains, contacts)
+            return Frame(float(group.attrs["t"]), grains, contacts, body, float(group.attrs.get("period", 0)))
 
     def group(self, name):
         """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
@@ -83,6 +140,11 @@ class Run:
             return {
                 key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
             }
+
+    def names(self, name):
+        """Return the names of the groups below another group (`fields`), sorted; empty if it is not there."""
+        with h5py.File(self.path / "run.h5", "r") as file:
+            return sorted(key for key, item in file.get(name, {}).items() if isinstance(item, h5py.Group))
 
     def labels(self, name):
         """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""

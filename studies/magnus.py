@@ -24,7 +24,7 @@ travel: after one length the body meets its own wake, which never refills.
 
 import os
 import sys
-from typing import Optional
+from typing import ClassVar, Optional
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
 
@@ -32,10 +32,11 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import channel, engines, fields, headless, intruder, progress, recording, scene  # noqa: E402
+from graindrive import channel, engines, fields, headless, intruder, picture, progress, recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import quantity  # noqa: E402
+from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.magnus import figure  # noqa: E402
 from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 
@@ -60,6 +61,8 @@ MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 class MagnusParameters(intruder.BodyParameters):
     """What the Magnus study knows; lengths in d = 0.02 m, all else SI."""
 
+    unit_system: ClassVar[str] = quantities.SI
+
     phi: float = quantity(0.352, "-", "area fraction of the grains", ge=0.05, le=0.9)
     v0: float = quantity(0.25, "m/s", "speed of the body along x", gt=0, le=20)
     spin_ratio: float = quantity(5.0, "-", "Omega = omega_0 R/V0, positive counter-clockwise", ge=-1000, le=1000)
@@ -81,7 +84,9 @@ class MagnusParameters(intruder.BodyParameters):
     wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing")
     field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
-    frames: int = quantity(1, "-", "pictures of the channel that are kept, the last at the end", ge=1, le=9999)
+    frames: int = quantity(
+        1, "-", "pictures of the channel that are kept, evenly in time, the last at the end", ge=1, le=9999
+    )
     largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
 
     @property
@@ -281,7 +286,7 @@ def record(p, folder, stage):
     block, track, ids = samples * SAMPLE_EVERY, recording.Track(folder), range(*stage["grains"])
     steps = int(p.way * D / (p.v0 * O.dt) / block) * block
     due = np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1]
-    frames = recording.Frames(folder, due, lambda: scene.picture(ids, stage["walls"], stage["body"]))
+    frames = recording.Frames(folder, due, lambda: picture.taken(ids, stage["walls"], stage["body"]))
 
     def steady():
         return steady_state(track.arrays(), p.settle_travel, p.mu, p.spin_ratio)
@@ -297,14 +302,21 @@ def record(p, folder, stage):
         track.append(row)
         if p.fields:
             around.dead = row["travel"] < p.settle_travel
-        frames.take_if_due(done, t)
         looks = p.until_error and len(track) % LOOK_EVERY == 0
         return looks and steady().is_good_to(p.until_error, FEWEST_BLOCKS)
 
-    label = f"driving {p.way:g} d"
     with recording.overlap_advice(OVERLAP_KEYS):
-        recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label=label)
-    frames.take_what_is_left(O.time)
+        recording.run_sampled(
+            folder,
+            steps,
+            block,
+            sample,
+            track=track,
+            frames=frames,
+            stage=stage,
+            grains=len(ids),
+            label=f"driving {p.way:g} d",
+        )
     found = steady()
     say_if_not_resolved(p, found)
     if p.fields:

@@ -39,7 +39,7 @@ surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of d
 
 import os
 import sys
-from typing import Literal, Optional
+from typing import ClassVar, Literal, Optional
 
 sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
 
@@ -47,10 +47,12 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import engines, fields, headless, intruder, lid, packing, progress, recording, scene  # noqa: E402
+from graindrive import engines, fields, headless, intruder, lid, packing, picture, progress  # noqa: E402
+from graindrive import recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import quantity  # noqa: E402
+from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drift import drift, phase_rates  # noqa: E402
 from graindrive.postproc.wiggle import figure  # noqa: E402
 
@@ -66,18 +68,19 @@ PAPERS_DEPTH = 105  # d, of the body's centre
 # What may help where grains overlap too far: in the run, and while the bed settles.
 OVERLAP_KEYS = "lower dt_factor or amplitude, raise period or largest_overlap"
 BED_OVERLAP_KEYS = "lower dt_factor, height or lid_pressure"
-MOTION = dict(x="d", y="d", vx="sqrt(d g)", vy="sqrt(d g)", fx="rho d^2 g", fy="rho d^2 g")
-SERIES = dict(t="sqrt(d/g)", **MOTION, contacts="-", work="rho g d^3")
+SERIES = quantities.units("series", "t x y vx vy fx fy contacts work", quantities.GRAIN)
 
 
 class WiggleParameters(intruder.BodyParameters):
     """What the wiggle study knows, in units of d, rho, g."""
 
+    unit_system: ClassVar[str] = quantities.GRAIN
+
     shape: str = quantity(
         "triangle", "-", "disk, square, tall, wide, triangle (OS1 to OS5), or a file of vertices: .wkt, .csv"
     )
     amplitude: float = quantity(
-        3.0, "d", "A of the displacement; of the velocity [sqrt(d g)] with drive=velocity", ge=0
+        3.0, "d", "A of the displacement; of the velocity [sqrt(g d)] with drive=velocity", ge=0
     )
     period: float = quantity(4.0, "sqrt(d/g)", "T of the oscillation", gt=0)
     drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "which of the two is A sin(2 pi t/T)")
@@ -86,7 +89,9 @@ class WiggleParameters(intruder.BodyParameters):
     height: float = quantity(195.0, "d", "height of the bed", gt=0)
     depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
-    frames: int = quantity(10, "-", "pictures of the bed that are kept, up to 40 a period", ge=1, le=9999)
+    frames: int = quantity(
+        10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999
+    )
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     orientation_deg: float = quantity(
@@ -233,10 +238,11 @@ def motion(state, drive):
 def keep_rates(p, folder, t, y):
     """Store V_y by the paper's rule, from a tenth of the run to arrest, with its error, and V_y by phase."""
     rise = drift(t, y, p.period, skip=SKIPPED)
-    folder.summarize(shape=p.shape, amplitude=p.amplitude, period=p.period)
+    amplitude_unit = "d" if p.drive == "displacement" else "sqrt(g d)"
+    folder.summarize(shape=p.shape, amplitude=(p.amplitude, amplitude_unit), period=p.period)
     folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, rise_until=rise.end, y_final=y[-1] - y[0])
     phases, rates, errors = phase_rates(t, y, p.period, rise.start, rise.end, PHASES)
-    folder.write("phase", dict(phase=(phases, "T"), vy=(rates, "sqrt(d g)"), vy_err=(errors, "sqrt(d g)")))
+    folder.write("phase", dict(phase=phases, vy=rates, vy_err=errors))
 
 
 # Run ------------------------------------------------------------------------------------------------------------------
@@ -288,7 +294,7 @@ def record(p, folder, stage):
     steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
     base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
     due, track = np.linspace(0, steps, p.frames).round(), recording.Track(folder)
-    frames = recording.Frames(folder, due, lambda: scene.picture(ids, [*base, *stage["lid"]], stage["body"]))
+    frames = recording.Frames(folder, due, lambda: picture.taken(ids, [*base, *stage["lid"]], stage["body"]))
 
     def sample(done):
         t = done * O.dt
@@ -298,10 +304,11 @@ def record(p, folder, stage):
         folder.append(t=t, contacts=binner.lastContactNumber, work=drive.work, **motion(state, drive))
         if p.fields:
             around.dead = t < SKIPPED * p.time
-        frames.take_if_due(done, t)
 
     with recording.overlap_advice(OVERLAP_KEYS):
-        recording.run_sampled(folder, steps, block, sample, track=track, stage=stage, grains=len(ids), label="shaking")
+        recording.run_sampled(
+            folder, steps, block, sample, track=track, frames=frames, stage=stage, grains=len(ids), label="shaking"
+        )
     keep_rates(p, folder, **track.arrays())
     if p.fields:
         fields.write_fields(folder, "around", around, fields.GRAIN)

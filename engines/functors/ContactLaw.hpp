@@ -5,6 +5,13 @@
 
 namespace graindrive {
 
+/// Where two disks or spheres touch.
+struct PairGeometry {
+	Vector3r normal;        ///< from body 1 to body 2
+	Real overlap;           ///< [m]
+	Real radius1, radius2;  ///< [m]
+};
+
 /// Base of the three functors: reads the pair from YADE, asks `Self::law(friction)`, and gives YADE the forces.
 ///
 /// Velocities are YADE's leapfrog ones at n-1/2, positions at n, as in LAMMPS. Periodic cells may not deform (no velGrad).
@@ -33,7 +40,7 @@ public:
 		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
 		if (!phys) {  // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
 			const Real friction = static_cast<const yade::FrictPhys&>(*iphys).tangensOfFrictionAngle;
-			const auto made = contact_phys_of(*this->scene, geom, id1, id2, friction);
+			const auto made = contact_phys_of(*this->scene, geom.refR1, geom.refR2, id1, id2, friction);
 			iphys = made;
 			phys = made.get();
 		}
@@ -43,17 +50,24 @@ public:
 
 	std::string leverArm = "radius";
 
+	/// What the law says of a pair of bodies at the present positions and velocities; changes nothing.
+	laws::PairResponse answer(const yade::Scene& scene, const PairGeometry& pair, const ContactPhys& phys, int id1, int id2) const
+	{
+		const yade::State& s1 = *(*scene.bodies)[id1]->state;
+		const yade::State& s2 = *(*scene.bodies)[id2]->state;
+		const laws::SpherePair contact{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
+			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
+		const auto arm = leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point;
+		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
+		return laws::respond(law, contact, phys.slip, scene.dt, arm);
+	}
+
 private:
 	void apply(const yade::ScGeom& geom, ContactPhys& phys, int id1, int id2) const
 	{
 		yade::Scene& scene = *this->scene;
-		const yade::State& s1 = *(*scene.bodies)[id1]->state;
-		const yade::State& s2 = *(*scene.bodies)[id2]->state;
-		const laws::SpherePair pair{ geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, s1.vel, s2.vel, s1.angVel,
-			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
-		const auto arm = leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point;
-		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
-		const auto answer = laws::respond(law, pair, phys.slip, scene.dt, arm);
+		const PairGeometry pair{ geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2 };
+		const auto answer = this->answer(scene, pair, phys, id1, id2);
 		phys.normalForce = answer.normal_force2;
 		phys.shearForce = answer.tangential_force2;
 		phys.slip = answer.slip;

@@ -19,14 +19,23 @@ static Real inverse_mass(const yade::Scene& scene, int id)
 	return frozen || !(state.mass > 0) ? 0 : 1 / state.mass;
 }
 
-yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, const yade::ScGeom& geom, int id1, int id2, Real friction)
+yade::shared_ptr<ContactPhys> contact_phys_of(
+	const yade::Scene& scene, Real radius1, Real radius2, int id1, int id2, Real friction)
 {
 	auto phys = boost::make_shared<ContactPhys>();
 	const Real inverse = inverse_mass(scene, id1) + inverse_mass(scene, id2);
-	phys->effectiveRadius = geom.refR1 * geom.refR2 / (geom.refR1 + geom.refR2);
+	phys->effectiveRadius = radius1 * radius2 / (radius1 + radius2);
 	phys->effectiveMass = inverse > 0 ? 1 / inverse : 0;  // two frozen bodies: no dashpot
 	phys->tangensOfFrictionAngle = friction;
 	return phys;
+}
+
+Real Ip2_FrictMat_FrictMat_ContactPhys::friction_between(const yade::Material& first, const yade::Material& second) const
+{
+	if (friction >= 0) return friction;
+	const Real angle = std::min(
+		static_cast<const yade::FrictMat&>(first).frictionAngle, static_cast<const yade::FrictMat&>(second).frictionAngle);
+	return std::tan(angle);
 }
 
 void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material>& first,
@@ -35,10 +44,8 @@ void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material
 	if (interaction->phys) return;
 	const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
 	if (!geom) throw std::invalid_argument(std::string(class_name) + " needs a ScGeom; use Ig2_Sphere_Sphere_ScGeom");
-	const Real angle = std::min(
-		static_cast<const yade::FrictMat&>(*first).frictionAngle, static_cast<const yade::FrictMat&>(*second).frictionAngle);
-	interaction->phys =
-		contact_phys_of(*scene, *geom, interaction->getId1(), interaction->getId2(), friction >= 0 ? friction : std::tan(angle));
+	interaction->phys = contact_phys_of(
+		*scene, geom->refR1, geom->refR2, interaction->getId1(), interaction->getId2(), friction_between(*first, *second));
 }
 
 }  // namespace graindrive

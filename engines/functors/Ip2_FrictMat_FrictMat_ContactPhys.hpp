@@ -6,7 +6,7 @@ namespace graindrive {
 
 /// The pair's reduced radius and mass, and its friction coefficient.
 yade::shared_ptr<ContactPhys> contact_phys_of(
-	const yade::Scene& scene, const yade::ScGeom& geom, int id1, int id2, Real friction);
+	const yade::Scene& scene, Real radius1, Real radius2, int id1, int id2, Real friction);
 
 class Ip2_FrictMat_FrictMat_ContactPhys : public Registered<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor> {
 public:
@@ -22,6 +22,9 @@ public:
 	std::string get2DFunctorType2() const override { return "FrictMat"; }
 	void go(const yade::shared_ptr<yade::Material>& first, const yade::shared_ptr<yade::Material>& second,
 		const yade::shared_ptr<yade::Interaction>& interaction) override;
+
+	/// The friction coefficient of a contact between bodies of these materials.
+	Real friction_between(const yade::Material& first, const yade::Material& second) const;
 
 	Real friction = -1;
 };

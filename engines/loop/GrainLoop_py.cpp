@@ -18,7 +18,7 @@ py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::ve
 	for (const loop::Contact& c : contacts) {
 		i.push_back(grain_id[c.first]), slipping.push_back(c.slipping);
 		overlap.push_back(c.overlap), slip.push_back(c.slip);
-		point.insert(point.end(), { c.point_x, c.point_y, 0 });
+		point.insert(point.end(), { c.point_x - c.overlap / 2 * c.n_x, c.point_y - c.overlap / 2 * c.n_y, 0 });  // as YADE's
 		normal.insert(normal.end(), { c.n_x, c.n_y, 0 });
 		normal_force.insert(normal_force.end(), { c.normal * c.n_x, c.normal * c.n_y, 0 });
 		tangential_force.insert(tangential_force.end(), { c.friction * c.n_y, -c.friction * c.n_x, 0 });
@@ -71,6 +71,24 @@ py::dict contacts(GrainLoop& loop)
 	return table;
 }
 
+/// Those at the present positions, walls included: the wall of side s stands as j = -2 - s.
+py::dict present_contacts(GrainLoop& loop)
+{
+	constexpr int first_wall = -2;
+	loop::Stepper& stepper = running(loop);
+	std::vector<loop::Contact> all = stepper.present_contacts();
+	const std::vector<int>& id = loop.bodies().grain_id;
+	std::vector<int> j;
+	for (const loop::Contact& c : all) j.push_back(id[c.second]);
+	for (const loop::Contact& c : stepper.wall_contacts()) {
+		all.push_back(c);
+		j.push_back(first_wall - static_cast<int>(stepper.settings().walls[c.second].side));
+	}
+	py::dict table = contact_table(all, id);
+	table["j"] = array_of(j);
+	return table;
+}
+
 Real kinetic_energy(GrainLoop& loop) { return running(loop).kinetic_energy(); }
 Real kinetic_energy_on_step(GrainLoop& loop) { return running(loop).kinetic_energy_on_step(); }
 void begin_on_step(GrainLoop& loop)
@@ -111,8 +129,13 @@ void bind_loop()
 		"or\n"
 		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
 	cls.def("contacts", contacts,
-		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
-		"normal_force and tangential_force on j [N], shape (n, 3).");
+		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m] of i along z x n, shape (n,); point [m], "
+	    "the\n"
+		"middle of the overlap beside i, normal n from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
+	cls.def("presentContacts", present_contacts,
+		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
+		"with\n"
+		"flat walls are among them, with j = -2, -3, -4, -5 for x_low, x_high, y_low, y_high.");
 	bind_checkpoint(cls);
 	bind_walls(cls);
 	bind_energy(cls);

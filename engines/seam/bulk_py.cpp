@@ -42,7 +42,7 @@ py::dict bodies(const yade::Scene& scene)
 py::dict contacts(const yade::Scene& scene)
 {
 	std::vector<int> i, j, slipping;
-	std::vector<Real> point, normal, normal_force, tangential_force, overlap;
+	std::vector<Real> point, normal, normal_force, tangential_force, overlap, slip;
 	for (std::size_t id = 0; id < scene.bodies->size(); ++id) {
 		if (!scene.bodies->exists(int(id))) continue;
 		for (const auto& [partner, interaction] : (*scene.bodies)[id]->intrs) {
@@ -55,6 +55,7 @@ py::dict contacts(const yade::Scene& scene)
 			j.push_back(interaction->getId2());
 			slipping.push_back(ours ? ours->slipping : 0);
 			overlap.push_back(geom->penetrationDepth);
+			slip.push_back(ours ? ours->slip.dot(Vector3r(-geom->normal[1], geom->normal[0], 0)) : 0);
 			append(point, geom->contactPoint);
 			append(normal, geom->normal);
 			append(normal_force, phys->normalForce);
@@ -63,7 +64,7 @@ py::dict contacts(const yade::Scene& scene)
 	}
 	py::dict table;
 	table["i"] = array_of(i), table["j"] = array_of(j), table["slipping"] = array_of(slipping),
-	table["overlap"] = array_of(overlap);
+	table["overlap"] = array_of(overlap), table["slip"] = array_of(slip);
 	table["point"] = array_of(point, 3), table["normal"] = array_of(normal, 3);
 	table["normal_force"] = array_of(normal_force, 3), table["tangential_force"] = array_of(tangential_force, 3);
 	return table;
@@ -83,9 +84,10 @@ void bind_bulk()
 	py::def("set_clock", set_clock, (py::arg("scene"), py::arg("iter"), py::arg("time")),
 		"Set O.iter and O.time [s] of a scene (O._sceneObj), and nothing else.");
 	py::def("contact_table", contacts, (py::arg("scene")),
-		"Contacts of a scene (O._sceneObj) as arrays: i, j, slipping, overlap [m], shape (n,); point [m] (in i's periodic "
-		"image),\n"
-		"normal from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
+		"Interactions of a scene (O._sceneObj), those of the last step, as arrays: i, j, slipping, overlap [m], slip [m] of i "
+	    "along\n"
+		"z x n (of our laws, else 0), shape (n,); point [m] (in i's periodic image), normal n from i to j, normal_force and "
+	    "tangential_force on j [N], shape (n, 3).");
 }
 
 }  // namespace graindrive

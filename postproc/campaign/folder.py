@@ -12,7 +12,7 @@ from ..reader import Run, RunError
 from .runs import measurements
 
 FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
-NOT_IN_TABLE = ("out", "resume", "redo", "vtk")  # keys of a study that say nothing of its result
+NOT_IN_TABLE = ("out", "resume", "redo", "vtk", "export")  # keys of a study that say nothing of its result
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,23 @@ class Campaign:
         if run.state != "complete" or not run.summary:
             return None
         keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
-        measured = {f"{k}_measured" if k in keys else k: v for k, v in run.summary.items() if keys.get(k) != v}
+        values, _ = parted(run.summary)
+        measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items() if keys.get(k) != v}
         facts = {fact: run.provenance.get(fact) for fact in FACTS}
         return {"run": planned["name"], "sweeps": " ".join(planned["sweeps"]), **keys, **measured, **facts}
+
+    def with_units(self, table):
+        """Return a table with a column NAME_unit at its end for every key and quantity that has a unit."""
+        units = [{f"{k}_unit": u for k, u in self.units(name).items() if k in table} for name in table["run"]]
+        return pd.concat([table, pd.DataFrame(units, index=table.index)], axis=1)
+
+    def units(self, name):
+        """Return {column: unit} of a run's keys and quantities; pure numbers and words are left out."""
+        run = self.run(name)
+        keys = {key: run.units[key] for key in run.parameters if key not in NOT_IN_TABLE}
+        _, told = parted(run.summary)
+        told.update({f"{key}_measured": unit for key, unit in told.items() if key in keys})
+        return {column: unit for column, unit in {**keys, **told}.items() if unit not in ("-", "")}
 
     def run(self, name):
         """Open one run folder."""
@@ -107,3 +121,9 @@ class Campaign:
 def sortable(column):
     """Return a column as it can be sorted: one that holds words and numbers (`auto` beside 60) by its text."""
     return column.astype(str) if len(set(column.map(lambda value: isinstance(value, str)))) > 1 else column
+
+
+def parted(summary):
+    """Return (quantities, {quantity: unit}) of the content of a summary.json."""
+    units = {key.removesuffix("_unit"): value for key, value in summary.items() if key.endswith("_unit")}
+    return {key: value for key, value in summary.items() if not key.endswith("_unit")}, units

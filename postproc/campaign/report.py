@@ -50,7 +50,7 @@ def write_report(folder):
     report = campaign.plan["report"]
     study = importlib.import_module(f"..{report}.campaign", __package__) if report else None
     table = campaign.folder / "table.csv"
-    write_text(table, campaign.as_measured.to_csv(index=False))
+    write_text(table, campaign.with_units(campaign.as_measured).to_csv(index=False))
     campaign = replace(campaign, pooled=getattr(study, "POOLED", ()))
     if not study or campaign.table.empty:
         return table

@@ -4,26 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .. import quantities
 from ..statistics import block_mean, ratio_mean, steady_start
 from . import model
 
 # Series of the Magnus study: block means of the forces of the grains on the body, and variances within a block.
-UNITS = dict(
-    t="s",
-    travel="d",
-    phi="-",
-    x="m",
-    fx="N",
-    fy="N",
-    normal_x="N",
-    torque="N m",
-    contacts="-",
-    slipping="-",
-    fx_var="N^2",
-    fy_var="N^2",
-    contacts_var="-",
+UNITS = quantities.units(
+    "series",
+    "t travel phi x fx fy normal_x torque contacts slipping fx_var fy_var contacts_var",
+    quantities.SI,
 )
-BY_ANGLE = dict(normal="N", tangential="N", contacts_by_angle="-", slipping_by_angle="-")
+BY_ANGLE = quantities.units("angular", "normal tangential contacts_by_angle slipping_by_angle", quantities.SI)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from matplotlib.colors import PowerNorm
 from matplotlib.patches import Polygon
 
 from ..drift import drift, phase_rates
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, draw_chains, draw_grains, save
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, PURPLE, STYLE, VERMILLION, draw_chains, draw_grains, save
 from ..reader import BASE, GRAIN, INTRUDER, Run
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
@@ -148,8 +148,7 @@ def draw_bed(axes, run, bed, box, norm=None):
     circles = draw_grains(axes, x[grains], y[grains], r[grains], values=speeds[grains], cmap="YlGnBu", norm=norm)
     draw_grains(axes, x[base], y[base], r[base], colour=GREY)
     draw_forces(axes, bed, x, y, period_x, shown, widest=0.35 * 72 * 2.55 / width)
-    centre_x, centre_y = run.at(bed.t, "x", "y")
-    draw_intruder(axes, run.group("intruder"), np.array([left + np.mod(centre_x - left, period_x), centre_y]))
+    draw_intruder(axes, *body_now(run, bed, left, period_x))
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height), aspect="equal")
     axes.set(xlabel=r"$x$  [$d$]", ylabel=r"$y$  [$d$]")
     axes.set_title(rf"$t$ = {bed.t:.4g} $\sqrt{{d/g}}$")
@@ -158,33 +157,48 @@ def draw_bed(axes, run, bed, box, norm=None):
 
 def speed_scale(speeds):
     """Return the scale of colours for speeds, arrays of one or many frames; a few fast grains do not spoil it."""
-    speeds = np.concatenate(speeds)
-    return PowerNorm(0.5, 0, max(np.quantile(speeds, 0.995), 1e-12) if len(speeds) else 1)
+    fast = np.quantile(np.concatenate(speeds), 0.995) if sum(map(len, speeds)) else 0
+    return PowerNorm(0.5, 0, fast if fast > 1e-12 else 1)  # a bed at rest has no scale of its own
 
 
 def draw_forces(axes, bed, x, y, period_x, shown, widest):
-    """Lines between the centres of touching grains; to the contact point where one side is the intruder."""
+    """Lines between the centres of touching disks, those that pull each other in another colour.
+
+    `x`, `y` are the grains' places in the picture. A line begins at the grain that is in it, at the other side's the body.
+    """
     c = bed.contacts
     if not c or len(c["fn"]) == 0:
         return
     i, j = (np.asarray(c[name], dtype=int) for name in ("i", "j"))
-    point = np.column_stack([c["px"], c["py"]])
-    centres = np.column_stack([x, y])
-    ends = [np.where((k == INTRUDER)[:, None], point, centres[np.maximum(k, 0)]) for k in (i, j)]
-    start = np.where((i == INTRUDER)[:, None], ends[1], ends[0])
-    end = np.where((i == INTRUDER)[:, None], ends[0], ends[1])
+    first = i != INTRUDER  # the side that is a grain
+    start, end = (np.where(first[:, None], *ends) for ends in zip(bed.contact_ends(), bed.contact_ends()[::-1]))
+    grain = np.where(first, i, j)
     reach = end - start
     reach[:, 0] -= period_x * np.round(reach[:, 0] / period_x)
-    near = shown[np.where(i == INTRUDER, j, i)]
-    draw_chains(axes, start[near], (start + reach)[near], np.abs(c["fn"])[near], colour=VERMILLION, widest=widest)
+    start, end = np.column_stack([x, y])[grain], np.column_stack([x, y])[grain] + reach
+    near = shown[grain]
+    draw_chains(axes, start[near], end[near], c["fn"][near], colour=VERMILLION, pulling=PURPLE, widest=widest)
+
+
+def body_now(run, bed, left, period_x):
+    """Return the intruder's arrays with beads and outline where they are in the picture, and its centre (2,)."""
+    body = run.group("intruder")
+    centre = np.array(bed.intruder.get("centre", run.at(bed.t, "x", "y")))
+    winds = np.array([np.floor((centre[0] - left) / period_x) * period_x, 0])
+    parts = {name: body[name] for name in ("beads", "outline") if name in body}
+    if len(bed.intruder.get("x", ())):
+        places = {name: bed.place(points, body["beads"]) for name, points in parts.items()}
+    else:
+        places = {name: points + centre for name, points in parts.items()}
+    return {**body, **{name: points - winds for name, points in places.items()}}, centre - winds
 
 
 def draw_intruder(axes, intruder, centre):
     """The intruder as a white body with its beads and a bold outline; a cross where its shape was not stored."""
     if "beads" in intruder:
-        beads, radius = intruder["beads"] + centre, float(np.atleast_1d(intruder["bead_radius"])[0])
+        beads, radius = intruder["beads"], float(np.atleast_1d(intruder["bead_radius"])[0])
         if "outline" in intruder:
-            body = Polygon(intruder["outline"] + centre, facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=3)
+            body = Polygon(intruder["outline"], facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=3)
             axes.add_patch(body)
         draw_grains(axes, beads[:, 0], beads[:, 1], np.full(len(beads), radius), colour=BLACK, zorder=4)
     axes.plot(*centre, "+", zorder=5, color=BLACK, markersize=4, markeredgewidth=0.8)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from .errors import UsageError
+from .postproc.quantities import DIMENSIONS
 
 
 class FieldUnits(NamedTuple):
@@ -15,8 +16,7 @@ class FieldUnits(NamedTuple):
     stress: str
 
 
-SI = FieldUnits("m", "m/s", "m^2/s^2", "kg/m^2", "N/m")
-GRAIN = FieldUnits("d", "sqrt(g d)", "g d", "rho", "rho g d")  # rho of the disks, so that a disk of d weighs pi/4
+SI, GRAIN = (FieldUnits(*(DIMENSIONS[name][system] for name in FieldUnits._fields)) for system in (0, 1))
 
 SETTINGS = ("kernel", "spacing", "width", "cutoff", "every", "relative", "phases", "period", "phaseStart")
 

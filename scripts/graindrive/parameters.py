@@ -2,10 +2,11 @@
 
 import hashlib
 import json
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import BaseModel, Field, validator
 
+EXPORTS = ("vtk", "xyz", "lammps")  # for ParaView; for OVITO and ASE; for LAMMPS and OVITO
 LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from what double precision can hold
 
@@ -30,6 +31,8 @@ class StudyParameters(BaseModel):
     its value from the others, in `auto_values`.
     """
 
+    unit_system: ClassVar[str] = ""  # of postproc.quantities, SI or GRAIN; empty where a study has units of its own
+
     scale: Literal["smoke", "demo", "paper"] = quantity(
         "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
     )
@@ -40,7 +43,10 @@ class StudyParameters(BaseModel):
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
     redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
-    vtk: bool = quantity(False, "-", "also write files for ParaView", identity=False)
+    vtk: bool = quantity(False, "-", "also write files for ParaView, as export=vtk", identity=False)
+    export: str = quantity(
+        "", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False
+    )
 
     class Config:
         extra = "forbid"
@@ -56,6 +62,16 @@ class StudyParameters(BaseModel):
     @validator("*")
     def _sized(cls, value):
         return sized(value) if isinstance(value, float) else value
+
+    @validator("export")
+    def _known_formats(cls, value):
+        known_formats(value)
+        return value
+
+    @property
+    def exports(self):
+        """Formats of EXPORTS in which the run's frames are written."""
+        return known_formats(self.export + ",vtk" * self.vtk)
 
     @classmethod
     def unit(cls, key):
@@ -105,6 +121,15 @@ def sized(number):
             f"the size of a number must be 0 or lie between {LEAST:g} and {MOST:g}; mind the unit of its key"
         )
     return number + 0.0
+
+
+def known_formats(text):
+    """Return the formats that a comma list names, a tuple in the order of EXPORTS; ValueError for one that is not there."""
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in EXPORTS:
+            raise ValueError(f"export is a comma list of {', '.join(EXPORTS)}, got {name!r}")
+    return tuple(name for name in EXPORTS if name in names)
 
 
 def plain_type(field):

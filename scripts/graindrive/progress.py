@@ -35,12 +35,12 @@ def require_feasible(steps):
         )
 
 
-def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run"):
+def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run", pauses=(), on_pause=None):
     """Run YADE `total_steps` steps, calling `on_block(steps_done)` after every `block` steps; return the `Timing`.
 
-    A true answer of `on_block` ends the run early. `grains` is the number of grains [-] that the rate counts. Raises
-    EngineError with what an engine raised, `Interrupted` on a signal, RuntimeError if something else paused the loop,
-    UsageError for more than 1e10 steps.
+    At `pauses`, numbers of steps that lie inside blocks, `on_pause(steps_done)` is called. A true answer of `on_block` ends
+    the run early. `grains` is the number of grains [-] that the rate counts. Raises EngineError with what an engine raised,
+    `Interrupted` on a signal, RuntimeError if something else paused the loop, UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
         raise ValueError(f"steps must be >= 0 and block >= 1, got {total_steps} and {block}")
@@ -48,9 +48,13 @@ def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run"):
     done, seconds = 0, 0.0
     with ProgressLine(total_steps, grains, label) as line:
         while done < total_steps:
-            steps = min(block, total_steps - done)
-            seconds += advance(steps)
-            done += steps
+            end = min(done + block, total_steps)
+            for pause in sorted({step for step in pauses if done < step < end}):
+                seconds += advance(pause - done)
+                done = pause
+                on_pause(done)
+            seconds += advance(end - done)
+            done = end
             line.update(done)
             if on_block is not None and on_block(done):
                 break

@@ -41,25 +41,29 @@ class Track:
 
 
 class Frames:
-    """Pictures that `picture()` takes after given `steps`, rising; a resumed run takes those that it lacks."""
+    """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes those that it lacks."""
 
     def __init__(self, folder, steps, picture):
-        self.folder, self.picture, self.due = folder, picture, list(steps[folder.frames :])
+        self.folder, self.picture, self.last = folder, picture, None
+        self.due = sorted({int(step) for step in steps})[folder.frames :]
 
-    def take_if_due(self, done, time):
+    def take_if_due(self, done):
         """Take a picture if one is due by the step `done`."""
         if self.due and done >= self.due[0]:
-            self.take(time)
+            self.take(done)
 
-    def take_what_is_left(self, time):
-        """Take one picture more if the run ended before all were due."""
-        if self.due:
-            self.take(time)
+    def take_what_is_left(self, done):
+        """Take one picture more if the run ended at `done`, before all were due."""
+        if self.due and done != self.last:
+            self.take(done)
 
-    def take(self, time):
-        """Take the next picture."""
+    def take(self, done):
+        """Take the next picture, of the time that `done` steps make."""
+        from yade import O
+
+        self.last = done
         self.due.pop(0)
-        self.folder.frame(time, *self.picture())
+        self.folder.frame(done * O.dt, *self.picture())
 
 
 def load_stage(folder, names):
@@ -85,11 +89,12 @@ def announce(folder, *, grains, dt, ratio, unit, also=""):
     print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
-def run_sampled(folder, steps, block, sample, *, track, stage, grains, label):
+def run_sampled(folder, steps, block, sample, *, track, frames, stage, grains, label):
     """Run `steps` steps from the start of the run, calling `sample(done)` after every `block`; return the steps done.
 
-    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. A checkpoint of the scene, the
-    `track` and the facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
+    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. `frames` are taken at their own
+    steps, inside of blocks too, and once more at the end if that came early. A checkpoint of the scene, the `track` and the
+    facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
     """
     first = folder.resumed["step"] if folder.resumed else 0
     checkpoints = progress.Every(CHECKPOINT_SECONDS)
@@ -100,13 +105,25 @@ def run_sampled(folder, steps, block, sample, *, track, stage, grains, label):
 
     def after_block(done):
         ended = sample(first + done)
+        frames.take_if_due(first + done)
         if checkpoints.due():
             folder.checkpoint(save, first + done, **stage)
         return ended
 
     if not folder.resumed:
         sample(0)
-    timing = progress.run_blocks(steps - first, block, after_block, grains=grains, label=label)
+        frames.take_if_due(0)
+    pauses = [due - first for due in frames.due]
+    timing = progress.run_blocks(
+        steps - first,
+        block,
+        after_block,
+        grains=grains,
+        label=label,
+        pauses=pauses,
+        on_pause=lambda done: frames.take_if_due(first + done),
+    )
+    frames.take_what_is_left(first + timing.steps)
     folder.note(steps=first + timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
     return first + timing.steps
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from . import run_data, run_remains, signals, vtk_export
+from . import exports, run_data, run_remains, signals
 from .errors import Interrupted, UsageError, one_line
+from .postproc import quantities
 from .provenance import provenance
 
 LONGEST_NAME = 230  # bytes; a file system takes 255, and NAME.interrupted-2 or .NAME.part-PID must fit
@@ -23,7 +24,7 @@ class RunFolder:
     """Context in which one run writes its data; `path` is the folder while it grows, `out` its name when complete.
 
     On entry `out` is checked and its neighbour `.NAME.part-PID` made; nothing is ever overwritten. A good end writes
-    `run.h5` and `summary.json`, calls `figure(path)`, exports frames if vtk=1 and renames the folder to `out`.
+    `run.h5` and `summary.json`, calls `figure(path)`, exports what is asked for and renames the folder to `out`.
     A UsageError removes it; a
     signal keeps what was measured as `NAME.interrupted`, any other failure as `NAME.failed`. Entering raises UsageError
     if `out` cannot be used, AlreadyComplete if the same run is there.
@@ -33,7 +34,7 @@ class RunFolder:
         self.parameters, self.study, self.figure = parameters, study, figure
         self.out = place_of(parameters.out)
         self.path = self.out.with_name(f".{self.out.name}.part-{os.getpid()}")
-        self.provenance, self.summary = provenance(parameters, study), {}
+        self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
         self.series, self.frames, self.lock, self.made = None, 0, None, []
         self.resumed, self.start, self.wall_before = None, time.monotonic(), 0.0
 
@@ -52,14 +53,21 @@ class RunFolder:
         with signals.deferred():
             self.series.append(**columns)
 
-    def frame(self, t, grains, contacts=None):
-        """Store a picture of the bed at time `t`: dicts of 1D arrays for grains and, if wanted, contacts."""
-        arrays = {**grains, **{f"contacts/{name}": array for name, array in (contacts or {}).items()}}
-        self.write(f"frames/{self.frames + 1:04d}", arrays, t=float(t))
+    def frame(self, t, grains, contacts=None, intruder=None, period=0.0):
+        """Store a picture of the bed at time `t` (see `picture.Picture`): dicts of 1D arrays, and the box's period in x."""
+        parts = {"contacts": contacts or {}, "intruder": intruder or {}}
+        inner = {f"{part}/{name}": array for part, columns in parts.items() for name, array in columns.items()}
+        self.write(f"frames/{self.frames + 1:04d}", {**grains, **inner}, t=float(t), period=float(period))
         self.frames += 1
 
     def write(self, group, arrays, **attributes):
-        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group."""
+        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group.
+
+        Names that `postproc.quantities` knows get their units from there.
+        """
+        system = self.parameters.unit_system
+        arrays = quantities.labelled(group, arrays, system)
+        attributes = quantities.with_units(group, attributes, system)
         with signals.deferred():
             run_data.write_item(self.path / "items", group, arrays, attributes)
 
@@ -67,9 +75,14 @@ class RunFolder:
         """Add facts to the provenance: dt, dt_over_critical, n_grains, steps, particle_steps_per_second …"""
         self.provenance.update(facts)
 
-    def summarize(self, **quantities):
-        """Add quantities, and their standard errors as NAME_err, to summary.json."""
-        self.summary.update(plain(quantities))
+    def summarize(self, **found):
+        """Add quantities, and their standard errors as NAME_err, to summary.json.
+
+        Their units come from `postproc.quantities`; (value, unit) says one that stands elsewhere or differs.
+        """
+        for name, value in found.items():
+            value, self.units[name] = value if isinstance(value, tuple) else (value, None)
+            self.summary.update(plain({name: value}))
 
     @property
     def wall_s(self):
@@ -95,8 +108,7 @@ class RunFolder:
                 try:
                     run_remains.look_around(self)
                     self.make_part()
-                    if self.parameters.vtk:
-                        vtk_export.modules()
+                    exports.check(self.parameters.exports)
                 except OSError as error:
                     raise UsageError(
                         f"out={one_line(self.parameters.out)} cannot be written ({error.strerror or type(error).__name__});"
@@ -158,24 +170,18 @@ class RunFolder:
         """Finish all files and give the folder its right name."""
         self.finish_data("complete")
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
-        text = json.dumps({**plain(facts), **self.summary}, indent=2, allow_nan=False)
+        own = {name: unit for name, unit in self.units.items() if unit is not None}
+        told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
+        text = json.dumps(told, indent=2, allow_nan=False)
         (self.path / "summary.json").write_text(text + "\n")
         if self.figure is not None:
             self.figure(self.path)
-        if self.parameters.vtk:
-            self.export_vtk()
+        exports.write(self.path, self.parameters.exports)
         self.close()
         run_remains.clear_work_files(self.path)
         run_remains.take_place(self.path, self.out, self.parameters.digest())
         if self.resumed:
             shutil.rmtree(self.resumed["remains"])
-
-    def export_vtk(self):
-        """Write all frames for ParaView into the subfolder `vtk`."""
-        from .postproc.reader import Run
-
-        run = Run(self.path)
-        vtk_export.export((run.frame(k) for k in range(len(run.frame_names))), self.path / "vtk")
 
     def keep(self, ending):
         """Save what was measured as NAME.`ending`; remove the folder if nothing was."""

@@ -261,32 +261,3 @@ def rows_of(ids):
         "vy": velocity[:, 1],
         "spin": table["spin"][rows, 2],
     }
-
-
-def picture(grains, base, intruder):
-    """Return the scene of this moment for a run folder: (grains and base, contacts), dicts of arrays of shape (n,).
-
-    `grains` and `base` are ids; the first dict adds to `rows_of` the role: 0 grain, 1 base. Contacts name their sides by
-    place in those arrays, -1 for the disk `intruder` or a member of that clump; those between two of neither are left out.
-    """
-    from yade import O
-
-    shown = np.concatenate([np.asarray(grains, int), np.asarray(base, int)])
-    role = np.r_[np.zeros(len(grains), int), np.ones(len(base), int)]
-    place = np.full(len(O.bodies), -2)
-    place[shown] = np.arange(len(shown))
-    table = engines.body_table(O._sceneObj)
-    place[table["id"][table["clump"] == intruder]] = place[intruder] = -1
-    loop = fast_loop()
-    contacts = loop.contacts() if loop else engines.contact_table(O._sceneObj)
-    i, j = place[contacts["i"]], place[contacts["j"]]
-    kept = (i > -2) & (j > -2)
-    columns = dict(
-        i=i,
-        j=j,
-        fn=np.linalg.norm(contacts["normal_force"], axis=1),
-        ft=np.linalg.norm(contacts["tangential_force"], axis=1),
-        px=contacts["point"][:, 0],
-        py=contacts["point"][:, 1],
-    )
-    return {**rows_of(shown), "role": role}, {name: column[kept] for name, column in columns.items()}

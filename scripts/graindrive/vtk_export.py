@@ -1,116 +1,95 @@
-"""Frames of a run as files for ParaView: grains and contacts as .vtp, all frames in time order as .pvd."""
+"""Frames and fields of a run for ParaView: grains, contacts, the driven body as .vtp, fields as .vti, their times as .pvd."""
 
 from pathlib import Path
 
 import numpy as np
 
-from .errors import UsageError
+from .vtk_files import image, in_plane, modules, polydata, write, write_collection
+
+CORNERS = 72  # of the circle that stands for a single disk
+
+__all__ = ["export", "export_fields", "modules"]
+
+# Names in these files -> names in frames.
+GRAINS = {"id": "id", "radius": "r", "velocity": "vx", "spin": "spin", "role": "role"}
+CONTACTS = {"i": "id_i", "j": "id_j", "normal_force": "fn", "tangential_force": "ft", "slip": "slip"}
 
 
-def export(frames, folder):
-    """Write `grains_NNNN.vtp`, `contacts_NNNN.vtp`, `grains.pvd` and `contacts.pvd` into `folder`.
+def export(frames, folder, body=None, units=()):
+    """Write `grains_NNNN.vtp`, `contacts_NNNN.vtp`, `intruder_NNNN.vtp` and `grains.pvd` … into `folder`.
 
-    `frames` yields objects with `t`, `grains` and `contacts` (dicts of 1D arrays, as `graindrive.postproc.reader.Frame`).
-    Grains are points with radius, velocity, spin and role: in ParaView, glyph by sphere, scale by radius, factor 2.
-    Contacts are lines from centre to centre, or to the contact point at the intruder, with normal and tangential
-    force. Raises UsageError if Debian's package python3-vtk9 is missing.
+    `frames` yields `graindrive.postproc.reader.Frame`s; `body` holds the arrays of the group `intruder`, `units` maps the
+    frames' names to units. Grains are points with id, radius, velocity, spin and role, the driven body's disks among them
+    with role 2: in ParaView, glyph by sphere, scale by radius, factor 2. Contacts are lines from centre to centre with
+    ids i, j, slip, normal force (< 0 pulls) and tangential force (on i along z x n). The intruder is its outline as one
+    closed line; a single disk's is a circle with a spoke, which shows its turn. Raises UsageError without python3-vtk9.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    written = {"grains": [], "contacts": []}
+    units, written = dict(units), {"grains": [], "contacts": []}
     for number, frame in enumerate(frames, start=1):
-        for kind, polydata in (("grains", grain_points(frame)), ("contacts", contact_lines(frame))):
+        parts = {"grains": grain_points(frame, units), "contacts": contact_lines(frame, units)}
+        if body and len(frame.intruder.get("x", ())):
+            parts["intruder"] = outline(frame, body)
+        for kind, data in parts.items():
             name = f"{kind}_{number:04d}.vtp"
-            write(polydata, folder / name)
-            written[kind].append((frame.t, name))
+            write(data, folder / name)
+            written.setdefault(kind, []).append((frame.t, name))
     for kind, entries in written.items():
-        rows = [f'    <DataSet timestep="{t!r}" file="{name}"/>' for t, name in entries]
-        text = [
-            '<VTKFile type="Collection" version="0.1">',
-            "  <Collection>",
-            *rows,
-            "  </Collection>",
-            "</VTKFile>",
-            "",
-        ]
-        (folder / f"{kind}.pvd").write_text("\n".join(text))
+        write_collection(folder / f"{kind}.pvd", entries)
 
 
-def grain_points(frame):
-    """Return the vtkPolyData of a frame's grains."""
-    g = frame.grains
+def grain_points(frame, units):
+    """Return the vtkPolyData of a frame's disks."""
+    g = frame.disks()
     n = len(g["x"])
-    arrays = {"radius": g["r"], "velocity": in_plane(g["vx"], g["vy"]), "spin": g["spin"]}
-    if "role" in g:
-        arrays["role"] = np.asarray(g["role"], dtype=np.int32)
-    return polydata(in_plane(g["x"], g["y"]), "verts", np.arange(n).reshape(n, 1), arrays, on_points=True)
+    arrays = {name: g[column] for name, column in GRAINS.items() if column in g and name != "velocity"}
+    arrays["velocity"] = in_plane(g["vx"], g["vy"])
+    cells = np.arange(n).reshape(n, 1)
+    return polydata(in_plane(g["x"], g["y"]), "verts", cells, arrays, renamed(units, GRAINS), on_points=True)
 
 
-def contact_lines(frame):
-    """Return the vtkPolyData of a frame's contacts; -1 as i or j stands for the intruder.
-
-    A contact across the periodic side ends at its contact point instead of crossing the whole picture.
-    """
+def contact_lines(frame, units):
+    """Return the vtkPolyData of a frame's contacts; a line across the periodic side ends beyond it, at j's image."""
     c = frame.contacts
     n = len(c["fn"]) if c else 0
-    if n == 0:
-        return polydata(np.zeros((0, 3)), "lines", np.zeros((0, 2), dtype=int), {}, on_points=False)
-    centres = in_plane(frame.grains["x"], frame.grains["y"])
-    point, reach = in_plane(c["px"], c["py"]), 3 * np.max(frame.grains["r"])
-    ends = []
-    for key in ("i", "j"):
-        at = centres[np.maximum(c[key], 0)]
-        outside = (np.asarray(c[key]) < 0) | (np.abs(at[:, 0] - point[:, 0]) > reach)
-        ends.append(np.where(outside[:, None], point, at))
-    arrays = {"normal_force": c["fn"], "tangential_force": c["ft"]}
-    return polydata(np.concatenate(ends), "lines", np.arange(2 * n).reshape(2, n).T, arrays, on_points=False)
+    ends = frame.contact_ends() if n else (np.zeros((0, 2)),) * 2
+    arrays = {name: c[column] for name, column in CONTACTS.items() if column in c} if n else {}
+    points, cells = in_plane(*np.concatenate(ends).T), np.arange(2 * n).reshape(2, n).T
+    return polydata(points, "lines", cells, arrays, renamed(units, CONTACTS), on_points=False)
 
 
-def in_plane(x, y):
-    """Return (n, 3) vectors with z = 0."""
-    return np.column_stack([x, y, np.zeros(len(x))]).astype(float)
+def outline(frame, body):
+    """Return the vtkPolyData of the driven body's outline in a frame."""
+    corners = body["outline"] if len(body.get("outline", ())) else circle_with_spoke(body)
+    places = frame.place(corners, body["beads"])
+    cells = np.append(np.arange(len(places)), 0)[None, :]
+    return polydata(in_plane(*places.T), "lines", cells, {}, on_points=False)
 
 
-def polydata(points, kind, cells, arrays, *, on_points):
-    """Return a vtkPolyData of `points` (n, 3), `cells` (m, k) of kind "verts" or "lines", and named arrays on either."""
-    vtk_points, vtk_cells, vtk_polydata, _, to_vtk = modules()
-    data, positions, grid = vtk_polydata(), vtk_points(), vtk_cells()
-    positions.SetData(to_vtk(points, deep=True))
-    data.SetPoints(positions)
-    offsets = np.arange(0, cells.size + 1, cells.shape[1], dtype=np.int64)
-    grid.SetData(to_vtk_id(offsets), to_vtk_id(cells.ravel().astype(np.int64)))
-    data.SetVerts(grid) if kind == "verts" else data.SetLines(grid)
-    target = data.GetPointData() if on_points else data.GetCellData()
-    for name, values in arrays.items():
-        array = to_vtk(np.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        target.AddArray(array)
-    return data
+def circle_with_spoke(body):
+    """Return a single disk's outline (m, 2) about its centre: centre and circle, which a closed line joins by a spoke."""
+    angles = np.linspace(0, 2 * np.pi, CORNERS + 1)
+    radius = float(np.atleast_1d(body["bead_radius"])[0])
+    return np.concatenate([[[0.0, 0.0]], radius * np.column_stack([np.cos(angles), np.sin(angles)])])
 
 
-def to_vtk_id(integers):
-    """Return a VTK array of ids."""
-    from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
-
-    return numpy_to_vtkIdTypeArray(integers, deep=True)
+def renamed(units, names):
+    """Return the units of the arrays of a file."""
+    return {name: units[column] for name, column in names.items() if column in units}
 
 
-def write(data, path):
-    """Write a vtkPolyData as a compressed .vtp file; raises OSError if that fails."""
-    writer = modules()[3]()
-    writer.SetFileName(str(path))
-    writer.SetInputData(data)
-    if not writer.Write():
-        raise OSError(f"VTK could not write {path}")
+def export_fields(fields, name, folder):
+    """Write `fields_NAME_PP.vti`, one per phase, and `fields_NAME.pvd`, at the middles of the phases in time.
 
-
-def modules():
-    """Return VTK's classes that this file needs; Debian's python3-vtk9 shares its libraries with YADE."""
-    try:
-        from vtkmodules.util.numpy_support import numpy_to_vtk
-        from vtkmodules.vtkCommonCore import vtkPoints
-        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-    except ImportError as error:
-        raise UsageError(f"vtk=1 needs VTK for Python ({error}); install Debian's package python3-vtk9") from None
-    return vtkPoints, vtkCellArray, vtkPolyData, vtkXMLPolyDataWriter, numpy_to_vtk
+    `fields` is a `graindrive.postproc.fields.Fields`. Places are those of the averager's window: about the driven body.
+    """
+    phases = len(fields.samples)
+    period, start = (float(fields.settings.get(key, 0)) for key in ("period", "phaseStart"))
+    entries = []
+    for phase in range(phases):
+        file = f"fields_{name}_{phase + 1:02d}.vti"
+        arrays = {field: values[phase] for field, values in fields.arrays.items()}
+        write(image(fields.x, fields.y, arrays, fields.units), Path(folder) / file)
+        entries.append((start + (phase + 0.5) / phases * period, file))
+    write_collection(Path(folder) / f"fields_{name}.pvd", entries)

@@ -231,3 +231,11 @@ def test_the_smoke_run_as_a_command_leaves_one_complete_folder(cache, tmp_path):
     found = summary_of(tmp_path / "result")
     for name in ("drag", "lift", "lift_to_drag", "contacts"):
         assert found[f"{name}_err"] > 0
+
+
+def test_frames_are_even_in_time_and_the_last_is_at_the_end(magnus, tmp_path):
+    carry_out(magnus, tmp_path / "run", travel=4.0, width=24, frames=3)
+    with h5py.File(tmp_path / "run/run.h5") as file:
+        times = [file[f"frames/{k:04d}"].attrs["t"] for k in (1, 2, 3)]
+        end, dt = file["series/t"][-1], file["provenance"].attrs["dt"]
+    np.testing.assert_allclose(times, end * np.array([1, 2, 3]) / 3, rtol=0, atol=0.51 * dt)  # half a time step

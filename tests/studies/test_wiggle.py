@@ -262,3 +262,33 @@ def test_what_cannot_be_run_is_refused_in_one_line(home, tmp_path, keys, words):
     refused = yade(home, "wiggle.py", "scale=smoke", *keys, folder=tmp_path)
     assert refused.returncode == 2 and words in refused.stderr.splitlines()[-1], refused.stderr
     assert files_below(tmp_path) == ["noise.WKT"]
+
+
+@pytest.mark.parametrize("loop", ["grain", "yade"])
+def test_frames_are_even_in_time_and_show_the_contacts_of_their_moment(wiggle, tmp_path, loop):
+    """Five frames in 1000 steps of which 25 make a block: at every 250th step, in blocks and between them; 7 in between."""
+    for count in (5, 7):
+        p = tiny(wiggle, loop=loop, frames=count, period=0.6, out=str(tmp_path / str(count)))
+        with RunFolder(p, study="wiggle") as folder:
+            wiggle.run(p, folder)
+        with h5py.File(tmp_path / str(count) / "run.h5") as file:
+            frames = [file["frames"][name] for name in sorted(file["frames"])]
+            times = np.array([frame.attrs["t"] for frame in frames])
+            dt = file["provenance"].attrs["dt"]
+            # To half a time step each.
+            np.testing.assert_allclose(times, np.linspace(0, 0.5, count), rtol=0, atol=0.51 * dt)
+            for frame in frames:
+                assert_contacts_are_overlapping_pairs(frame, 22.0)
+
+
+def assert_contacts_are_overlapping_pairs(frame, width):
+    """Of grains and base, without pairs of two frozen ones."""
+    x, y, r, role = (frame[name][:] for name in ("x", "y", "r", "role"))
+    dx = x[:, None] - x
+    dx -= width * np.round(dx / width)
+    overlap = r[:, None] + r - np.hypot(dx, y[:, None] - y)
+    touch = np.triu((overlap > 0) & ~((role[:, None] > 0) & (role > 0)), 1)
+    i, j = frame["contacts/i"][:], frame["contacts/j"][:]
+    both = (i >= 0) & (j >= 0)
+    assert set(zip(i[both], j[both])) == set(zip(*np.nonzero(touch))) and touch.sum() > 50
+    assert (i == -1).sum() + (j == -1).sum() > 0, "the body touches grains"

@@ -1,0 +1,126 @@
+/// Contacts of YADE's own loop at the present positions: the ones that its next step will find, before it is taken.
+#include "engines/functors/present_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "engines/functors/contact_law_functors.hpp"
+
+namespace graindrive {
+
+namespace {
+
+using Answer = std::function<laws::PairResponse(const PairGeometry&, const ContactPhys&, int, int)>;
+
+template <class Law>
+bool is(const yade::LawFunctor& law, const yade::Scene& scene, Answer& answer)
+{
+	const auto* ours = dynamic_cast<const Law*>(&law);
+	if (!ours) return false;
+	answer = [ours, &scene](const PairGeometry& pair, const ContactPhys& phys, int id1, int id2) {
+		return ours->answer(scene, pair, phys, id1, id2);
+	};
+	return true;
+}
+
+Answer answer_of(const yade::LawFunctor& law, const yade::Scene& scene)
+{
+	Answer answer;
+	if (is<Law2_ScGeom_ContactPhys_HertzHistory>(law, scene, answer) ||
+		is<Law2_ScGeom_ContactPhys_HertzRestitution>(law, scene, answer) ||
+		is<Law2_ScGeom_ContactPhys_SpringDashpot>(law, scene, answer))
+		return answer;
+	throw std::invalid_argument("present_contacts knows Graindrive's three laws, got " + law.getClassName());
+}
+
+struct Extent {
+	int id;
+	Real low, width;  ///< [m] along x
+};
+
+/// Where the bodies of a scene lie along x, by their lower ends; in a periodic cell these lie in [0, period).
+std::vector<Extent> extents(const yade::Scene& scene, Real period)
+{
+	std::vector<Extent> found;
+	for (std::size_t id = 0; id < scene.bodies->size(); ++id) {
+		if (!scene.bodies->exists(int(id))) continue;
+		const yade::Body& body = *(*scene.bodies)[id];
+		const auto* sphere = dynamic_cast<const yade::Sphere*>(body.shape.get());
+		if (!sphere) continue;
+		const Real low = body.state->pos[0] - sphere->radius;
+		found.push_back({ int(id), period > 0 ? low - period * std::floor(low / period) : low, 2 * sphere->radius });
+	}
+	std::sort(found.begin(), found.end(), [](const Extent& a, const Extent& b) { return a.low < b.low; });
+	return found;
+}
+
+/// Pairs whose extents along x overlap, each once, the smaller id first, in rising order.
+std::vector<std::pair<int, int>> pairs_along_x(const std::vector<Extent>& extents, Real period)
+{
+	std::vector<std::pair<int, int>> pairs;
+	const std::size_t n = extents.size();
+	for (std::size_t a = 0; a < n; ++a)
+		for (std::size_t k = a + 1; k < a + (period > 0 ? n : n - a); ++k) {
+			const Extent& b = extents[k % n];
+			if (b.low + (k < n ? 0 : period) > extents[a].low + extents[a].width) break;
+			pairs.push_back(std::minmax({ extents[a].id, b.id }));
+		}
+	std::sort(pairs.begin(), pairs.end());
+	pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+	return pairs;
+}
+
+/// From body 1 to the nearest image of body 2.
+Vector3r separation(const yade::Scene& scene, int id1, int id2, const Vector3r& periods)
+{
+	Vector3r d = (*scene.bodies)[id2]->state->pos - (*scene.bodies)[id1]->state->pos;
+	for (int axis = 0; axis < 3; ++axis)
+		if (periods[axis] > 0) d[axis] -= periods[axis] * std::nearbyint(d[axis] / periods[axis]);
+	return d;
+}
+
+const yade::Interaction* real_interaction(const yade::Body& body, int partner)
+{
+	const auto found = body.intrs.find(partner);
+	return found != body.intrs.end() && found->second->isReal() ? found->second.get() : nullptr;
+}
+
+Real radius_of(const yade::Body& body) { return static_cast<const yade::Sphere&>(*body.shape).radius; }
+
+/// The contact of a pair, if they touch and a force between them can matter.
+std::optional<PresentContact> contact_of(const yade::Scene& scene, std::pair<int, int> ids, const Vector3r& periods,
+	const Ip2_FrictMat_FrictMat_ContactPhys& contact_maker, const Answer& answer)
+{
+	auto [id1, id2] = ids;
+	const yade::Interaction* known = real_interaction(*(*scene.bodies)[id1], id2);
+	if (known) id1 = known->getId1(), id2 = known->getId2();
+	const yade::Body &one = *(*scene.bodies)[id1], &two = *(*scene.bodies)[id2];
+	const Vector3r d = separation(scene, id1, id2, periods);
+	const Real overlap = radius_of(one) + radius_of(two) - d.norm();
+	if (!(overlap >= 0) || (one.isClumpMember() && one.clumpId == two.clumpId)) return {};
+	const auto* carried = known ? dynamic_cast<const ContactPhys*>(known->phys.get()) : nullptr;
+	const auto made = carried ? nullptr
+	                          : contact_phys_of(scene, radius_of(one), radius_of(two), id1, id2,
+									contact_maker.friction_between(*one.material, *two.material));
+	const ContactPhys& phys = carried ? *carried : *made;
+	if (phys.effectiveMass == 0) return {};
+	const PairGeometry pair{ d / d.norm(), overlap, radius_of(one), radius_of(two) };
+	return PresentContact{ id1, id2, pair.normal, overlap, answer(pair, phys, id1, id2) };
+}
+
+}  // namespace
+
+std::vector<PresentContact> present_contacts(
+	const yade::Scene& scene, const yade::LawFunctor& law, const Ip2_FrictMat_FrictMat_ContactPhys& contact_maker)
+{
+	const Answer answer = answer_of(law, scene);
+	const Vector3r periods = scene.isPeriodic ? Vector3r(scene.cell->hSize.colwise().norm()) : Vector3r(Vector3r::Zero());
+	std::vector<PresentContact> found;
+	for (const auto& pair : pairs_along_x(extents(scene, periods[0]), periods[0]))
+		if (const auto contact = contact_of(scene, pair, periods, contact_maker, answer)) found.push_back(*contact);
+	return found;
+}
+
+}  // namespace graindrive

@@ -1,0 +1,253 @@
+"""Every name that a run folder or a campaign's table holds, with its unit and its meaning: the one source of units.
+
+Writers take units from here, and `as_markdown` makes the table of postproc/README.md.
+"""
+
+from typing import NamedTuple
+
+SI, GRAIN = "SI", "grain"  # systems of units: that of the Magnus study, and d, rho, g of the wiggle study
+
+# What a dimension is called in each system; disks have a mass per area, so that rho is in kg/m^2.
+DIMENSIONS = {
+    "length": ("m", "d"),
+    "time": ("s", "sqrt(d/g)"),
+    "velocity": ("m/s", "sqrt(g d)"),
+    "spin": ("rad/s", "sqrt(g/d)"),
+    "force": ("N", "rho g d^2"),
+    "force squared": ("N^2", "rho^2 g^2 d^4"),
+    "torque": ("N m", "rho g d^3"),
+    "work": ("J", "rho g d^3"),
+    "density": ("kg/m^2", "rho"),
+    "temperature": ("m^2/s^2", "g d"),
+    "stress": ("N/m", "rho g d"),
+}
+
+
+class Quantity(NamedTuple):
+    """A name's `unit`: a key of DIMENSIONS, or a unit that all studies share ("-": a pure number, "": a word); `meaning`."""
+
+    unit: str
+    meaning: str
+
+
+def of(unit, **meanings):
+    """Return {name: Quantity} of names that share a unit."""
+    return {name: Quantity(unit, meaning) for name, meaning in meanings.items()}
+
+
+DISKS = {
+    **of("-", id="YADE's id of the disk"),
+    **of(
+        "length",
+        x="of the centre; in a periodic box within [0, period), but the driven body is never cut in two",
+        y="of the centre",
+        r="radius",
+    ),
+    **of("velocity", vx="of the centre, half a time step before t", vy="of the centre, half a time step before t"),
+    **of("spin", spin="angular velocity, counter-clockwise, half a time step before t"),
+}
+
+# Where a name stands -> {name: Quantity}. NAME_err, a standard error, has the unit of NAME and no line of its own.
+QUANTITIES = {
+    "summary": {
+        **of("1/s", particle_steps_per_second="grains times steps over the seconds spent in the loop"),
+        **of(
+            "-",
+            steps="time steps from the start of the run",
+            n_grains="free grains, without walls, base and driven body",
+            dt_over_critical="time step over the critical one",
+        ),
+        **of("s", wall_s="wall time of the run, interrupted parts included"),
+        **of("", shape="wiggle: the key"),
+        **of(
+            "length", amplitude="wiggle: the key A; a velocity with drive=velocity", y_final="rise of the body in all"
+        ),
+        **of("time", period="wiggle: the key T", rise_until="end of the average of rise_rate: arrest or the run's end"),
+        **of("velocity", rise_rate="V_y, mean velocity upwards from a tenth of the run to arrest"),
+        **of(
+            "length",
+            fall_height="of the shape: from the lowest point with a vertical tangent to the top, the cavity model's l",
+            intruder_height="extent of the body along y",
+        ),
+        **of("velocity", v0="Magnus: the key V0"),
+        **of("-", spin_ratio="Magnus: the key Omega = omega_0 R/V0", mu="the key"),
+        **of("force", drag="mean force on the body along -V", lift="mean force on the body along -omega x V"),
+        **of("torque", torque="mean torque on the body, counter-clockwise"),
+        **of(
+            "-",
+            lift_to_drag="L/D, ratio of the means",
+            contacts="mean number of contacts on the body",
+            phi="mean area fraction between the walls, without the body",
+            slipping_share="part of the contacts on the body that slip",
+            kappa="normal forces' part of the drag (Eq. 14)",
+            front_share="part of the contacts within pi/2 of the velocity",
+            contacts_std="standard deviation of the number of contacts in time",
+            model_symmetric="L/D by Eq. 9 of the model",
+            model_kappa="L/D by Eq. 15 of the model with the measured kappa",
+            steady="1 if the averages' window was found steady, else 0",
+        ),
+        **of(
+            "force",
+            drag_std="standard deviation of the drag in time",
+            lift_std="standard deviation of the lift in time",
+        ),
+        **of("d", steady_from="travel at which the averages begin", steady_travel="travel that the averages cover"),
+    },
+    "series": {
+        **of("time", t="time; a row of Magnus is the mean over the block that ends then"),
+        **of("length", x="centroid of the body, periods counted", y="centroid of the body"),
+        **of("velocity", vx="of the body, half a time step before t", vy="of the body, half a time step before t"),
+        **of("force", fx="of the grains on the body", fy="of the grains on the body"),
+        **of("-", contacts="on the body", slipping="Magnus: contacts on the body that slip"),
+        **of("work", work="wiggle: done by the drive since the start"),
+        **of("d", travel="Magnus: way of the body since the start"),
+        **of("-", phi="Magnus: area fraction between the walls, without the body"),
+        **of("force", normal_x="Magnus: normal forces on the body, along x"),
+        **of("torque", torque="Magnus: on the body, counter-clockwise"),
+        **of(
+            "force squared", fx_var="Magnus: variance of fx within the block", fy_var="Magnus: of fy within the block"
+        ),
+        **of("-", contacts_var="Magnus: variance of the number of contacts within the block"),
+    },
+    "frames/NNNN": {
+        **of("time", t="attribute: time of the picture"),
+        **of("length", period="attribute: period of the box in x, which begins at 0; 0: it does not repeat"),
+        **DISKS,
+        **of("-", role="0 grain, 1 base, wall or lid (2, in exports, bead of the driven body)"),
+    },
+    "frames/NNNN/intruder": {
+        **DISKS,
+        **of("length", centre="(x, y) of the driven body's centroid"),
+        **of("rad", angle="a single disk: how far it has turned since the start, up to whole turns"),
+    },
+    "frames/NNNN/contacts": {
+        **of(
+            "-",
+            i="row of the first side in the frame's arrays; -1: the driven body",
+            j="row of the second side; -1: the driven body; -2, -3, -4, -5: flat wall x_low, x_high, y_low, y_high",
+            id_i="YADE's id of the first side, of a body its bead's",
+            id_j="YADE's id of the second side, of a body its bead's; of a wall as j",
+        ),
+        **of(
+            "force",
+            fn="normal force: > 0 pushes the two apart, < 0 pulls them together (a damped contact that separates)",
+            ft="tangential force on i along z x n, n from i to j: > 0 drives i to the left of n",
+        ),
+        **of(
+            "length",
+            slip="tangential spring, way of i against j along z x n",
+            px="contact point, the middle of the overlap, next to i: in the periodic image in which i is drawn",
+            py="contact point",
+        ),
+    },
+    "intruder": {
+        **of(
+            "length",
+            beads="(x, y) of the beads about the centroid at the start",
+            outline="(x, y) of the outline's corners about the centroid at the start; a disk has none",
+            bead_radius="radius of the beads, or of the disk",
+        )
+    },
+    "fields/NAME": {
+        **of("length", x="middles of the bins from the window's origin, the body's centroid", y="the same"),
+        **of("-", samples="moments averaged, by phase", area_fraction="area of disks over area"),
+        **of("density", density="mass over area"),
+        **of("velocity", velocity="mean velocity (x, y); nan where no grain was"),
+        **of(
+            "temperature", temperature="granular temperature, half the mean square of v - <v>; nan where no grain was"
+        ),
+        **of(
+            "stress",
+            pressure="half the trace of the stress, contacts and motion",
+            contact_stress="stress by contacts, first index the force's, second the branch's; > 0 in compression",
+            kinetic_stress="stress by motion about the mean velocity",
+        ),
+        **of(
+            "", kernel="attribute: the averager's kernel", relative="attribute: velocities are relative to the body's"
+        ),
+        **of("length", spacing="attribute: of the bins", width="attribute: w of the kernel"),
+        **of(
+            "-",
+            cutoff="attribute: reach of the Gaussian over its width",
+            every="attribute: time steps from moment to moment",
+            phases="attribute: parts of the cycle; 1: all moments in one",
+        ),
+        **of("time", period="attribute: of the cycle", phaseStart="attribute: when the first cycle begins"),
+    },
+    "angular": {
+        **of("d", first_travel="attribute: travel at which the averages begin"),
+        **of("rad", theta="middles of the bins, angle from the velocity, counter-clockwise"),
+        **of("force", normal="sum of the normal forces in the bin", tangential="of the tangential, counter-clockwise"),
+        **of(
+            "-",
+            contacts_by_angle="number of contacts in the bin",
+            slipping_by_angle="of those that slip",
+            mobilised="F_T/(mu F_N); nan where nothing pressed",
+        ),
+    },
+    "phase": {**of("T", phase="middle of the part of the cycle, t/T"), **of("velocity", vy="V_y in this part")},
+    "table.csv": {
+        **of("", run="name of the run's folder below runs/", sweeps="sweeps that want the run"),
+        **of("", cpu="processor that ran it", code_version="of Graindrive"),
+        **of("-", threads="threads that ran it"),
+    },
+}
+
+
+def place_of(group):
+    """Return the key of QUANTITIES that a group of run.h5 stands under: frames/0001/contacts is frames/NNNN/contacts."""
+    parts = group.split("/")
+    if len(parts) > 1:
+        parts[1] = {"frames": "NNNN", "fields": "NAME"}.get(parts[0], parts[1])
+    return "/".join(parts)
+
+
+def unit_of(group, name, system):
+    """Return the unit of a name in a group, in the system SI or GRAIN; None if it is a word or nobody knows it.
+
+    `system` is "" for a study whose units are its own: of it the units that all studies share are known.
+    """
+    known = QUANTITIES.get(place_of(group), {})
+    found = known.get(name) or known.get(name.removesuffix("_err"))
+    if found is None or not found.unit:
+        return None
+    if found.unit in DIMENSIONS:
+        return DIMENSIONS[found.unit][system == GRAIN] if system else None
+    return found.unit
+
+
+def units(group, names, system):
+    """Return {name: unit} of names, parted by spaces, in a group; KeyError for one that it does not have."""
+    return {name: unit_of(group, name, system) for name in names.split() if QUANTITIES[place_of(group)][name]}
+
+
+def labelled(group, arrays, system):
+    """Return arrays of a group with their units, {name: (array, unit)}; what comes with its unit, or has none, stays."""
+
+    def with_unit(name, content):
+        part, _, last = f"{group}/{name}".rpartition("/")
+        unit = None if isinstance(content, tuple) else unit_of(part, last, system)
+        return content if unit is None else (content, unit)
+
+    return {name: with_unit(name, content) for name, content in arrays.items()}
+
+
+def with_units(group, values, system, known=()):
+    """Return plain values with NAME_unit behind each that has a unit; `known` maps names to units of their own."""
+    known, told = dict(known), {}
+    for name, value in values.items():
+        told[name] = value
+        unit = None if name.endswith("_err") else known.get(name, unit_of(group, name, system))
+        if unit is not None:
+            told[f"{name}_unit"] = unit
+    return told
+
+
+def as_markdown():
+    """Return the table of all names as Markdown, in the order of QUANTITIES."""
+    rows = ["| where | name | SI | d, ρ, g | meaning |", "|---|---|---|---|---|"]
+    for group, names in QUANTITIES.items():
+        for name, (unit, meaning) in names.items():
+            si, grain = DIMENSIONS.get(unit, (unit, unit))
+            rows.append(f"| `{group}` | `{name}` | {si} | {grain} | {meaning} |")
+    return "\n".join(rows)

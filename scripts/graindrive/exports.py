@@ -1,0 +1,79 @@
+"""A run's frames for other programs: ParaView (`vtk/`), OVITO and ASE (`frames.xyz`), LAMMPS and OVITO (`frames.lammpstrj`)."""
+
+import os
+import shutil
+
+from . import text_exports, vtk_export
+from .postproc.reader import Run, RunError
+
+
+class Frames:
+    """The frames of a run in the order of time, read anew from the file each time they are gone through."""
+
+    def __init__(self, run):
+        self.run = run
+
+    def __iter__(self):
+        return (self.run.frame(k) for k in range(len(self.run.frame_names)))
+
+
+def check(formats):
+    """Raise UsageError if a format needs what is not installed."""
+    if "vtk" in formats:
+        vtk_export.modules()
+
+
+def write(path, formats):
+    """Write the frames, and for vtk the fields, of the run folder `path` in each of `formats`, each in one step.
+
+    Raises RunError for a run whose frames do not tell the box's period, as those of older versions.
+    """
+    check(formats)
+    for name in formats:
+        run = Run(path)
+        if run.frame_names and "period" not in run.labels(f"frames/{run.frame_names[0]}")[1]:
+            raise RunError(
+                f"{path} holds frames of an older version, without the box's period; run it again to export them"
+            )
+        WRITERS[name](run, units_of(run))
+
+
+def units_of(run):
+    """Return {name: unit} of the columns of a run's frames and contacts, and of their time `t`."""
+    if not run.frame_names:
+        return {}
+    first = f"frames/{run.frame_names[0]}"
+    disks, attributes = run.labels(first)
+    said = {"t": attributes["t_unit"]} if "t_unit" in attributes else {}
+    return {**run.labels(f"{first}/contacts")[0], **disks, **said}
+
+
+def write_vtk(run, units):
+    """Write the folder `vtk`; an older one gives way to it when it is whole."""
+    from .postproc import fields  # it draws, too: no run should wait for matplotlib
+
+    target, temporary = run.path / "vtk", run.path / ".vtk"
+    shutil.rmtree(temporary, ignore_errors=True)
+    vtk_export.export(Frames(run), temporary, run.group("intruder"), units)
+    for name in run.names("fields"):
+        vtk_export.export_fields(fields.read(run, name), name, temporary)
+    shutil.rmtree(target, ignore_errors=True)
+    os.rename(temporary, target)
+
+
+def write_text(run, units, name, writer):
+    """Write the file `name` in one step."""
+    target = run.path / name
+    temporary = target.with_name(f".{name}")
+    with open(temporary, "w", encoding="utf-8") as file:
+        if run.frame_names:
+            writer(Frames(run), file, units, run.provenance.get("dt", 1.0))
+    os.replace(temporary, target)
+
+
+WRITERS = {
+    "vtk": write_vtk,
+    "xyz": lambda run, units: write_text(run, units, "frames.xyz", text_exports.write_xyz),
+    "lammps": lambda run, units: write_text(run, units, "frames.lammpstrj", text_exports.write_lammps),
+}
+FILES = {"vtk": "vtk/", "xyz": "frames.xyz", "lammps": "frames.lammpstrj"}
