@@ -1,5 +1,6 @@
 """Open a run folder: parameters, provenance, time series, frames of the bed and the intruder, as NumPy arrays with units."""
 
+import contextlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,13 +66,25 @@ class Run:
     def summary(self):
         """Content of summary.json as a dict; empty for a run that did not end well."""
         file = self.path / "summary.json"
-        return json.loads(file.read_text()) if file.exists() else {}
+        try:
+            return json.loads(file.read_text()) if file.exists() else {}
+        except (OSError, ValueError) as error:
+            raise RunError(f"{file} cannot be read: {' '.join(str(error).split())}") from None
+
+    @contextlib.contextmanager
+    def opened(self):
+        """Open run.h5 for a block; RunError where it cannot be read."""
+        try:
+            with h5py.File(self.path / "run.h5", "r") as file:
+                yield file
+        except (OSError, KeyError) as error:
+            raise RunError(f"{self.path / 'run.h5'} cannot be read: {' '.join(str(error).split())}") from None
 
     def frame(self, number=-1):
         """Return the `Frame` with this place in the order of time; -1 is the last. Raises RunError if there is none."""
         if not -len(self.frame_names) <= number < len(self.frame_names):
             raise RunError(f"{self.path} holds {len(self.frame_names)} frames; there is no frame {number}")
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             group = file["frames"][self.frame_names[number]]
             contacts = {name: dataset[()] for name, dataset in group.get("contacts", {}).items()}
             grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
@@ -79,14 +92,14 @@ class Run:
 
     def group(self, name):
         """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             return {
                 key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
             }
 
     def labels(self, name):
         """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             if name not in file:
                 return {}, {}
             units = {key: item.attrs["unit"] for key, item in file[name].items() if "unit" in item.attrs}

@@ -1,0 +1,76 @@
+"""Files and folders that appear on disk whole or not at all: written beside, synced, renamed; removed the same way.
+
+A rename is the only step that a reader, or the call after a kill, can see. Syncing before it keeps the order on disk after a
+power failure too. Names that end in `.tmp` are being written and mean nothing to anybody else.
+"""
+
+import contextlib
+import os
+import shutil
+from pathlib import Path
+
+
+def beside(path):
+    """Return the name under which `path` is written before it is renamed."""
+    path = Path(path)
+    return path.with_name(f".{path.name}.tmp")
+
+
+def write_text(path, text):
+    """Write a text file (UTF-8), whole or not at all; an older one stays until then."""
+    with written(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+@contextlib.contextmanager
+def written(path):
+    """Yield the name to write in this block; afterwards it takes the name `path`, or goes if the block failed."""
+    temporary = beside(path)
+    try:
+        yield temporary
+        put_in_place(temporary, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        raise
+
+
+def put_in_place(temporary, path):
+    """Sync the file `temporary` and give it the name `path`."""
+    sync(temporary)
+    os.replace(temporary, path)
+    sync(Path(path).parent)
+
+
+def rename_folder(folder, path):
+    """Give `folder` the name `path`, which is free or an empty folder, after all in it is synced."""
+    sync_tree(folder)
+    os.rename(folder, path)
+    sync(Path(path).parent)
+
+
+def sync(path):
+    """Have the disk hold what was written to a file, or which names a folder has."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError:  # some network file systems sync no folders
+        if not os.path.isdir(path):
+            raise
+    finally:
+        os.close(descriptor)
+
+
+def sync_tree(folder):
+    """Sync a folder and all that is in it."""
+    for place, _, names in os.walk(folder):
+        for name in names:
+            sync(os.path.join(place, name))
+        sync(place)
+
+
+def discard(folder, hidden):
+    """Remove a folder: it gets the name `hidden` first, under which a call that follows a kill removes the rest."""
+    shutil.rmtree(hidden, ignore_errors=True)
+    os.rename(folder, hidden)
+    shutil.rmtree(hidden, ignore_errors=True)
