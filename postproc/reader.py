@@ -8,6 +8,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ..run_data import UNREADABLE
+
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
 INTRUDER = -1  # in a contact's `i` or `j`
 
@@ -59,7 +61,7 @@ class Run:
                 self.frame_names = sorted(file.get("frames", {}), key=int)
         except FileNotFoundError:
             raise RunError(f"{path} is not a run folder: it holds no run.h5") from None
-        except (OSError, KeyError) as error:
+        except UNREADABLE as error:
             raise RunError(f"{path} cannot be read as a run: {' '.join(str(error).split())}") from None
 
     @property
@@ -77,7 +79,7 @@ class Run:
         try:
             with h5py.File(self.path / "run.h5", "r") as file:
                 yield file
-        except (OSError, KeyError) as error:
+        except UNREADABLE as error:
             raise RunError(f"{self.path / 'run.h5'} cannot be read: {' '.join(str(error).split())}") from None
 
     def frame(self, number=-1):

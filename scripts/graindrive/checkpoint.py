@@ -105,7 +105,7 @@ def take_over(remains, facts, name, path):
     source = remains / "run.h5"
     try:
         run_data.write_file(path / DATA, lambda file: copy_data(source, file, facts))
-    except (OSError, KeyError, RuntimeError) as error:
+    except run_data.UNREADABLE as error:
         if is_full(error):
             raise
         raise Damaged(f"{source} cannot be read ({one_line(error)})") from None

@@ -15,7 +15,14 @@ import numpy as np
 
 from . import whole_files
 
+UNREADABLE = (
+    OSError,
+    RuntimeError,
+    KeyError,
+    ValueError,
+)  # what h5py raises for files that are cut, foreign or damaged
 CHUNK_ROWS = 4096
+ROOM = 2**17  # bytes for the names and indices of a series file
 FLUSH_SECONDS = 1.0
 
 unwritten = []  # files that could not be closed: HDF5 crashes when such a file is let go of
@@ -34,20 +41,29 @@ class SeriesWriter:
     """
 
     def __init__(self, path, units, first=None):
-        self.path, temporary = Path(path), whole_files.beside(path)
+        self.path, temporary = whole_files.beside(path), whole_files.beside(path)
+        self.units, self.rows = dict(units), 0
+        self.reserve()  # HDF5 crashes on a disk that is full: it never gets to write on one
         self.file = h5py.File(temporary, "w", libver="latest")
+        self.reserve()
         group = self.file.create_group("series")
         for name, unit in units.items():
             options = dict(shape=(0,), maxshape=(None,), chunks=(CHUNK_ROWS,), dtype="f8")
             group.create_dataset(name, **options).attrs["unit"] = unit
         self.file.swmr_mode = True
-        self.group, self.waiting, self.rows, self.waiting_rows = group, {name: [] for name in units}, 0, 0
-        self.units, self.sums = dict(units), {name: new_sum() for name in units}
+        self.group, self.waiting, self.waiting_rows = group, {name: [] for name in units}, 0
+        self.sums = {name: new_sum() for name in units}
         self.last_flush = time.monotonic()
         if first and len(first[next(iter(units))]):
             self.append(**first)
         self.flush()
+        self.path = Path(path)
         whole_files.put_in_place(temporary, self.path)
+
+    def reserve(self):
+        """Keep room on the disk for all rows; OSError where there is none, and the file is then as before."""
+        chunks = len(self.units) * (self.rows // CHUNK_ROWS + 2)
+        whole_files.reserve(self.path, int(1.02 * chunks * CHUNK_ROWS * 8) + ROOM)
 
     def append(self, **columns):
         """Add one row of numbers, or many rows as 1D arrays of one length; every series must be given."""
@@ -66,6 +82,8 @@ class SeriesWriter:
 
     def flush(self):
         """Hand all rows to the operating system: after this they survive the death of the process."""
+        if self.waiting_rows:
+            self.reserve()
         for name, parts in self.waiting.items():
             if parts:
                 dataset, new = self.group[name], np.concatenate(parts)
@@ -206,12 +224,13 @@ def merge(target, series, items, describe):
 
 def write_file(target, fill):
     """Write the HDF5 file `target`, whole or not at all, with what `fill(file)` puts into it."""
-    with whole_files.written(target) as temporary:
-        file = h5py.File(temporary, "w")
+    with whole_files.written(target) as temporary, whole_files.Patient(temporary) as raw:
+        file = h5py.File(raw, "w")
         try:
             fill(file)
         finally:
             close(file)
+            raw.raise_error()
 
 
 def rows_in(path):
@@ -219,7 +238,7 @@ def rows_in(path):
     try:
         with h5py.File(path, "r", libver="latest", swmr=True) as file:
             return min([len(dataset) for dataset in file.get("series", {}).values()], default=0)
-    except OSError:
+    except UNREADABLE:
         return -1
 
 

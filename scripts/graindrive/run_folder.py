@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from . import checkpoint, run_data, run_place, run_remains, signals, vtk_export, whole_files
-from .errors import Interrupted, UsageError, one_line
+from .errors import Interrupted, UsageError, is_full, one_line
 from .provenance import provenance
 
 CONTRACT = ("particle_steps_per_second", "steps", "n_grains", "wall_s", "dt_over_critical")
@@ -94,6 +94,8 @@ class RunFolder:
                 try:
                     self.begin()
                 except OSError as error:
+                    if is_full(error):
+                        raise
                     raise UsageError(
                         f"out={one_line(self.parameters.out)} cannot be written ({error.strerror or one_line(error)});"
                         " give out= a folder that you may write to"
@@ -191,7 +193,9 @@ class RunFolder:
         with run_place.held(self.out.parent):
             self.close()
             kept = run_remains.keep(self.path, self.out, ending)
-        self.say(f"the data so far are kept in {kept}" if kept else "earlier remains are as far as this run came; they stay")
+        self.say(
+            f"the data so far are kept in {kept}" if kept else "earlier remains are as far as this run came; they stay"
+        )
 
     def finish_data(self, state):
         """Make the one plain `run.h5` of all that was written; `state` says how the run ended."""

@@ -11,6 +11,7 @@ import h5py
 
 from . import whole_files
 from .errors import UsageError, one_line
+from .run_data import UNREADABLE
 
 LONGEST_NAME = 255 - len(".interrupted-9999")  # of a file system's names, in bytes
 
@@ -100,7 +101,7 @@ def stored_digest(path):
         with h5py.File(path / "run.h5", "r") as file:
             complete = file.attrs["state"] == "complete" and read_summary(path) is not None
             return str(file.attrs["digest"]) if complete else None
-    except (OSError, KeyError, ValueError):
+    except UNREADABLE:
         return None
 
 
@@ -127,7 +128,7 @@ def damage(path):
             file.visititems(lambda _, item: item[()] is None if isinstance(item, h5py.Dataset) else None)
         name = "summary.json"
         read_summary(path)
-    except (OSError, KeyError, ValueError, RuntimeError) as error:
+    except UNREADABLE as error:
         return f"{path / name} cannot be read ({one_line(error)})"
     return None
 

@@ -110,7 +110,7 @@ def is_readable(path):
     try:
         h5py.File(path, "r").close()
         return True
-    except OSError:
+    except run_data.UNREADABLE:
         return False
 
 
@@ -189,7 +189,7 @@ def was_to_resume(part):
     try:
         with h5py.File(part / "run.h5", "r") as file:
             return bool(file["parameters/resume"][()])
-    except (OSError, KeyError):
+    except run_data.UNREADABLE:
         return False
 
 
@@ -198,7 +198,7 @@ def attribute(folder, name):
     try:
         with h5py.File(folder / "run.h5", "r", libver="latest", swmr=True) as file:
             return str(file.attrs[name])
-    except (OSError, KeyError):
+    except run_data.UNREADABLE:
         return None
 
 

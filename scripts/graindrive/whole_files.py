@@ -5,9 +5,12 @@ power failure too. Names that end in `.tmp` are being written and mean nothing t
 """
 
 import contextlib
+import io
 import os
 import shutil
 from pathlib import Path
+
+from .errors import is_full
 
 
 def beside(path):
@@ -33,6 +36,55 @@ def written(path):
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+class Patient(io.FileIO):
+    """A new file for a writer that cannot bear an error, as HDF5, which crashes: `raise_error` tells of the first one later.
+
+    What is written after an error goes nowhere.
+    """
+
+    def __init__(self, path):
+        super().__init__(path, "w+")
+        self.error = None
+
+    def write(self, content):
+        """Write all of `content`; return its length."""
+        left = memoryview(content).cast("B")
+        length = len(left)
+        while len(left) and self.attempt(lambda: super(Patient, self).write(left)):
+            left = left[self.done :]
+        return length
+
+    def truncate(self, size=None):
+        """Cut or lengthen the file; return the size."""
+        self.attempt(lambda: super(Patient, self).truncate(size))
+        return size
+
+    def attempt(self, action):
+        """Call `action()` unless an error was met before; True if there is none now, its result is `done` then."""
+        try:
+            self.done = action() if self.error is None else None
+        except OSError as error:
+            self.error = error
+        return self.error is None
+
+    def raise_error(self):
+        """Raise the first error that was met, if any."""
+        if self.error is not None:
+            raise self.error
+
+
+def reserve(path, size):
+    """Have the file system keep room for `size` bytes of the file `path`, made if need be; OSError if it has none."""
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        os.posix_fallocate(descriptor, 0, size)
+    except OSError as error:  # some file systems cannot
+        if is_full(error):
+            raise
+    finally:
+        os.close(descriptor)
 
 
 def put_in_place(temporary, path):
