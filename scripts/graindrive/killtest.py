@@ -213,7 +213,7 @@ def datasets(file):
 
 
 def differing_bits(one, other):
-    """Return in how many bits two arrays differ; all bits of the larger one where it lacks in the other, or is of another shape."""
+    """Return in how many bits two arrays differ: all of the larger one where one is missing or they differ in shape or type."""
     if one is None or other is None or one.shape != other.shape or one.dtype != other.dtype:
         return 8 * max(array.nbytes for array in (one, other) if array is not None)
     a, b = (np.frombuffer(array.tobytes(), np.uint8) for array in (one, other))

@@ -14,6 +14,7 @@ from .errors import UsageError, one_line
 from .run_data import UNREADABLE
 
 LONGEST_NAME = 255 - len(".interrupted-9999")  # of a file system's names, in bytes
+LONGEST_SHOWN = 300  # characters of a path in a message
 
 
 class AlreadyComplete(Exception):
@@ -22,15 +23,14 @@ class AlreadyComplete(Exception):
 
 def place_of(given):
     """Return the absolute path of `out=given`, links followed; UsageError where no folder can take that name at the end."""
-    path = os.path.abspath(os.path.expanduser(given))
-    refused = f"out={one_line(given)}"
-    if str(given).startswith("~") and os.path.expanduser(given) == given:
+    expanded, refused = os.path.expanduser(given), f"out={one_line(given, LONGEST_SHOWN)}"
+    path = os.path.abspath(expanded)
+    if given.startswith("~") and expanded == given:
         raise UsageError(f"{refused} names a home that is not there; give the path itself")
     if os.path.islink(path) and not os.path.exists(path):
-        raise UsageError(
-            f"{refused} is a link to {one_line(os.readlink(path))}, which is not there; make that folder or remove the link"
-        )
-    path = Path(os.path.realpath(path))
+        target = one_line(os.readlink(path), LONGEST_SHOWN)
+        raise UsageError(f"{refused} is a link to {target}, which is not there; make that folder or remove the link")
+    path = Path(os.path.realpath(expanded))
     if not path.name:
         raise UsageError(f"{refused} is not the name of a run folder; give one below it")
     if os.path.ismount(path):
@@ -59,7 +59,7 @@ def refuse_what_is_there(run):
 
     With redo a damaged run is moved to NAME.damaged.
     """
-    given, out = f"out={one_line(run.parameters.out)}", run.out
+    given, out = f"out={one_line(run.parameters.out, LONGEST_SHOWN)}", run.out
     if not out.exists():
         return
     if not out.is_dir():
@@ -84,7 +84,7 @@ def refuse_at_work(run):
     """Raise UsageError if another process is writing a run for the same place."""
     if any(is_alive(part) for part in hidden_ones(run.out, "part")):
         raise UsageError(
-            f"another run is writing out={one_line(run.parameters.out)}; give another out=, or wait for it"
+            f"another run is writing out={one_line(run.parameters.out, LONGEST_SHOWN)}; give another out=, or wait for it"
         )
 
 

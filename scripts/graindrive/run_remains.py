@@ -13,9 +13,10 @@
 | `.NAME.gone-PID` | killed while it was removed | removes it |
 | `NAME.interrupted`, `NAME.failed` | kept on purpose | resume=1 goes on from the furthest of the same parameters |
 
-Each arrow is one rename of something whole, so every row above is all that a kill can leave. A part that was resumed holds a
-copy of what it goes on from: it takes the place of those remains once it is further than they are, and counts for nothing
-before. So the furthest checkpoint is never removed before a further one stands. Remains are checked against the checksums in their checkpoint (`checkpoint.py`) before anything is taken from them.
+Each step between them is one rename of something whole, so a kill can leave nothing else. A part that was resumed holds a copy
+of what it goes on from: it takes the place of those remains once it is further than they are, and counts for nothing before.
+So the furthest checkpoint is never removed before a further one stands. Remains are checked against the checksums in their
+checkpoint (`checkpoint.py`) before anything is taken from them.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""A run that is killed before any of its changes of the file system, or meets a full disk anywhere, comes out as if it had not."""
+"""A run that is killed before any of its changes of the file system, or meets a full disk anywhere, comes out whole."""
 
 import json
 import os
