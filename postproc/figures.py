@@ -1,6 +1,5 @@
 """What all figures share: size of a paper's column, colours that colour-blind readers can tell apart, PNG and PDF."""
 
-import os
 from pathlib import Path
 
 import matplotlib
@@ -10,6 +9,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
+
+from ..whole_files import written  # noqa: E402
 
 COLUMN_WIDTH = 3.4  # inches: one column of a two-column journal
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
@@ -40,10 +41,8 @@ def save(figure, folder):
 def save_as(figure, folder, name):
     """Write NAME.png and NAME.pdf into `folder`, each in one step, and close the figure."""
     for ending in ("png", "pdf"):
-        target = Path(folder) / f"{name}.{ending}"
-        temporary = target.with_name(f".{target.name}")
-        figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
-        os.replace(temporary, target)
+        with written(Path(folder) / f"{name}.{ending}") as temporary:
+            figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
     plt.close(figure)
 
 

@@ -1,11 +1,14 @@
 """Open a run folder: parameters, provenance, time series, frames of the bed and the intruder, as NumPy arrays with units."""
 
+import contextlib
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
 import numpy as np
+
+from ..run_data import UNREADABLE
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
 INTRUDER = -1  # in a contact's `i` or `j`; what is below stands for flat walls
@@ -115,20 +118,32 @@ class Run:
                 self.frame_names = sorted(file.get("frames", {}), key=int)
         except FileNotFoundError:
             raise RunError(f"{path} is not a run folder: it holds no run.h5") from None
-        except (OSError, KeyError) as error:
+        except UNREADABLE as error:
             raise RunError(f"{path} cannot be read as a run: {' '.join(str(error).split())}") from None
 
     @property
     def summary(self):
         """Content of summary.json as a dict; empty for a run that did not end well."""
         file = self.path / "summary.json"
-        return json.loads(file.read_text()) if file.exists() else {}
+        try:
+            return json.loads(file.read_text()) if file.exists() else {}
+        except (OSError, ValueError) as error:
+            raise RunError(f"{file} cannot be read: {' '.join(str(error).split())}") from None
+
+    @contextlib.contextmanager
+    def opened(self):
+        """Open run.h5 for a block; RunError where it cannot be read."""
+        try:
+            with h5py.File(self.path / "run.h5", "r") as file:
+                yield file
+        except UNREADABLE as error:
+            raise RunError(f"{self.path / 'run.h5'} cannot be read: {' '.join(str(error).split())}") from None
 
     def frame(self, number=-1):
         """Return the `Frame` with this place in the order of time; -1 is the last. Raises RunError if there is none."""
         if not -len(self.frame_names) <= number < len(self.frame_names):
             raise RunError(f"{self.path} holds {len(self.frame_names)} frames; there is no frame {number}")
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             group = file["frames"][self.frame_names[number]]
             contacts, body = ({n: d[()] for n, d in group.get(part, {}).items()} for part in ("contacts", "intruder"))
             grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
@@ -136,7 +151,7 @@ class Run:
 
     def group(self, name):
         """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             return {
                 key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
             }
@@ -148,7 +163,7 @@ class Run:
 
     def labels(self, name):
         """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""
-        with h5py.File(self.path / "run.h5", "r") as file:
+        with self.opened() as file:
             if name not in file:
                 return {}, {}
             units = {key: item.attrs["unit"] for key, item in file[name].items() if "unit" in item.attrs}

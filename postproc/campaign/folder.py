@@ -1,6 +1,7 @@
 """A campaign's folder: its plan, and its runs as one table."""
 
 import json
+import sys
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +13,7 @@ from ..reader import Run, RunError
 from .runs import measurements
 
 FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
-NOT_IN_TABLE = ("out", "resume", "redo", "vtk", "export")  # keys of a study that say nothing of its result
+NOT_IN_TABLE = ("out", "resume", "checkpoint_seconds", "redo", "vtk", "export")  # keys that say nothing of the result
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,11 @@ class Campaign:
         """Return the table's row of one planned run; None if it is not complete."""
         try:
             run = self.run(planned["name"])
-        except RunError:
-            return None
-        if run.state != "complete" or not run.summary:
+            if run.state != "complete" or not run.summary:
+                return None
+        except RunError as error:
+            if (self.folder / "runs" / planned["name"]).is_dir():
+                print(f"campaign: {error}; it is left out", file=sys.stderr)
             return None
         keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
         values, _ = parted(run.summary)

@@ -1,11 +1,13 @@
 """The report of a campaign as Markdown: what was run at what cost, then figures with captions, claims and verdicts."""
 
 import importlib
-import os
+import sys
 from dataclasses import dataclass, replace
 from urllib.parse import quote
 
+from ...whole_files import write_text
 from .. import figures
+from ..reader import RunError
 from .folder import Campaign
 from .verdicts import tally
 
@@ -60,16 +62,18 @@ def write_report(folder):
 
 
 def sections_of(campaign, planned_figures):
-    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s."""
+    """Draw the figures that the campaign's runs allow, into its folder `figures`; return their `Section`s.
+
+    A figure that needs a run which cannot be read is left out, with a line that names the run.
+    """
+    made = []
     with figures.plt.rc_context(figures.STYLE):
-        return [planned.made(campaign) for planned in planned_figures if not campaign.sweep(planned.sweep).empty]
-
-
-def write_text(path, text):
-    """Write a text file in one step: a reader sees the old one or the new one."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)
+        for planned in planned_figures:
+            try:
+                made += [] if campaign.sweep(planned.sweep).empty else [planned.made(campaign)]
+            except RunError as error:
+                print(f"campaign: figure {planned.name} is left out: {error}", file=sys.stderr)
+    return made
 
 
 def as_markdown(campaign, title, sections):

@@ -4,15 +4,14 @@ RESULTS.md keeps one section per campaign, between two comments that name it. Pu
 section and its figures in studies/figures/, and leaves the others as they are.
 """
 
-import os
 import re
 import shutil
 import sys
 from pathlib import Path
 
+from ...whole_files import write_text, written
 from ..reader import RunError
 from .folder import Campaign
-from .report import write_text
 
 HEADING = """# Results
 
@@ -57,9 +56,8 @@ def copy_figures(folder, target):
     """Copy the PNG figures of a campaign, each in one step."""
     target.mkdir(exist_ok=True)
     for source in sorted((folder / "figures").glob("*.png")):
-        temporary = target / f".{source.name}.tmp"
-        shutil.copyfile(source, temporary)
-        os.replace(temporary, target / source.name)
+        with written(target / source.name) as temporary:
+            shutil.copyfile(source, temporary)
 
 
 def main(arguments):

@@ -1,6 +1,5 @@
 """A film of a run (MP4): all its frames of the bed, with one view and one scale of colours."""
 
-import os
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -8,6 +7,7 @@ import numpy as np
 from matplotlib.animation import FFMpegWriter
 from matplotlib.cm import ScalarMappable
 
+from ...whole_files import written
 from ..figures import STYLE
 from ..reader import GRAIN, Run, RunError
 from . import figure as drawing
@@ -31,10 +31,8 @@ def film(path):
     if not FFMpegWriter.isAvailable():
         raise RunError("a film needs ffmpeg; install Debian's package ffmpeg")
     target = Path(path) / "animation.mp4"
-    temporary = target.with_name(".animation.mp4")
-    with plt.rc_context(STYLE):
+    with plt.rc_context(STYLE), written(target) as temporary:
         shoot(run, temporary)
-    os.replace(temporary, target)
     return target
 
 
@@ -46,7 +44,7 @@ def shoot(run, target):
     figure, axes = plt.subplots(figsize=picture_size(box), layout="constrained")
     figure.suptitle(drawing.title(run))
     figure.colorbar(ScalarMappable(norm, "YlGnBu"), ax=axes, pad=0.01, extend="max", label=r"speed  [$\sqrt{gd}$]")
-    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-f", "mp4"])
     try:
         with writer.saving(figure, str(target), DOTS_PER_INCH):
             for bed in beds:

@@ -2,6 +2,7 @@
 
 import contextlib
 import fcntl
+import glob
 import hashlib
 import os
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import whole_files
 from .parameters import digest
 
 
@@ -55,6 +57,8 @@ def one_at_a_time(path):
         yield True
         return
     with lock:
+        for left in path.parent.glob(f".{glob.escape(path.stem)}-*{path.suffix}"):
+            remove(left)  # of a builder that was killed while it stored
         try:
             yield waited
         finally:
@@ -114,9 +118,7 @@ def store(path, arrays):
         with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.stem}-", suffix=".npz", delete=False) as file:
             temporary = file.name
             np.savez(file, checksum=checksum_of(arrays), **arrays)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
+        whole_files.put_in_place(temporary, path)
     except OSError as error:
         remove(temporary)
         print(f"graindrive: cannot write cache {path} ({error.strerror}); going on without", file=sys.stderr)

@@ -1,5 +1,10 @@
 """The ways in which a run ends early: a request that cannot be met, an engine that stops it, a signal."""
 
+import errno
+import os
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # no room on the disk, in the quota, in a file
+
 
 class UsageError(Exception):
     """What was asked for cannot be done; the message is one line: what was given, what is allowed, the way out."""
@@ -21,6 +26,12 @@ class Interrupted(BaseException):
         super().__init__(f"stopped by signal {signal_number}")
         self.signal_number = int(signal_number)
         self.exit_code = 128 + self.signal_number
+
+
+def is_full(error):
+    """True if an error says that a file could not grow; engines and HDF5 tell it in their text alone."""
+    words = [os.strerror(number) for number in FULL]
+    return getattr(error, "errno", None) in FULL or any(word in str(error) for word in words)
 
 
 def one_line(value, limit=60):

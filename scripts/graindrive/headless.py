@@ -16,11 +16,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from . import run_data, signals
+from . import output, run_data, signals
 from .cache import cache_folder
-from .errors import EngineError, Interrupted, UsageError, one_line
+from .errors import EngineError, Interrupted, UsageError, is_full, one_line
 from .run_folder import RunFolder
-from .run_remains import AlreadyComplete
+from .run_place import AlreadyComplete
 
 # Before anything imports matplotlib: its font list belongs in our cache, not in the home.
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
@@ -74,6 +74,7 @@ def main(study, parameters, presets, *, check=nothing_to_check, defaults=None, f
     if _declared is not None:
         _declared.append(Declaration(name, parameters, presets, dict(defaults or {}), check))
         return
+    output.forgive()
     leave_nothing_behind()
     p = parameters.from_command_line(sys.argv[1:], presets, study=name, defaults=defaults)
     batch = is_batch()
@@ -86,8 +87,9 @@ def main(study, parameters, presets, *, check=nothing_to_check, defaults=None, f
 
 def end(code):
     """End the program with this exit code, also where HDF5 could not write out a file: its own end would crash on that."""
-    sys.stdout.flush()
-    sys.stderr.flush()
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            stream.flush()
     if run_data.files_stay_open():
         remove_yades_folder()
         os._exit(code)
@@ -110,7 +112,7 @@ def guarded(action, name):
         print(f"{name}: {there}", file=sys.stderr)
         return 0
     except UsageError as error:
-        if os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0"):
+        if is_debugging():
             traceback.print_exc()
         print(f"{name}: error: {one_line(error, 1000)}", file=sys.stderr)
         return UsageError.exit_code
@@ -119,10 +121,17 @@ def guarded(action, name):
         print(f"{name}: stopped by {signal.Signals(number).name}", file=sys.stderr)
         return 128 + number
     except Exception as error:
-        if not isinstance(error, EngineError) or os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0"):
+        if not (isinstance(error, EngineError) or is_full(error)) or is_debugging():
             traceback.print_exc()
         print(f"{name}: failed: {type(error).__name__}: {one_line(error, 500)}", file=sys.stderr)
+        if is_full(error):
+            print(f"{name}: failed: the disk or the quota is full; make room, resume=1 then goes on", file=sys.stderr)
         return 1
+
+
+def is_debugging():
+    """True if $GRAINDRIVE_DEBUG asks for tracebacks of errors that need none."""
+    return os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0")
 
 
 def is_batch():

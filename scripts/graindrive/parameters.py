@@ -42,6 +42,9 @@ class StudyParameters(BaseModel):
     dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0)
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
+    checkpoint_seconds: float = quantity(
+        60.0, "s", "wall time between two checkpoints; 0: after every block of steps", identity=False, ge=0
+    )
     redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
     vtk: bool = quantity(False, "-", "also write files for ParaView, as export=vtk", identity=False)
     export: str = quantity(

@@ -6,9 +6,8 @@ import sys
 import numpy as np
 
 from . import progress, scene
-from .errors import EngineError
+from .errors import EngineError, UsageError, one_line
 
-CHECKPOINT_SECONDS = 60
 SCENE = "scene.checkpoint"
 
 
@@ -67,8 +66,18 @@ class Frames:
 
 
 def load_stage(folder, names):
-    """Put the scene from which a resumed run goes on into YADE; return the facts of its `stage` by these names."""
-    scene.load(folder.resumed["folder"] / SCENE)
+    """Put the scene from which a resumed run goes on into YADE; return the facts of its `stage` by these names.
+
+    UsageError for a scene that this version cannot go on from; the remains stay as they are.
+    """
+    try:
+        scene.load(folder.resumed["folder"] / SCENE)
+    except RuntimeError as error:
+        remains = folder.resumed["remains"]
+        raise UsageError(
+            f"the scene in {remains} cannot be gone on from ({one_line(error, 200)}); remove {remains.name} or move it away"
+            " to start anew"
+        ) from None
     return {name: folder.resumed[name] for name in names}
 
 
@@ -94,10 +103,10 @@ def run_sampled(folder, steps, block, sample, *, track, frames, stage, grains, l
 
     A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. `frames` are taken at their own
     steps, inside of blocks too, and once more at the end if that came early. A checkpoint of the scene, the `track` and the
-    facts `stage` is written once a minute. Steps and rate go to the folder's provenance.
+    facts `stage` is written every `checkpoint_seconds`. Steps and rate go to the folder's provenance.
     """
     first = folder.resumed["step"] if folder.resumed else 0
-    checkpoints = progress.Every(CHECKPOINT_SECONDS)
+    checkpoints = progress.Every(folder.parameters.checkpoint_seconds)
 
     def save(place):
         scene.save(place / SCENE)

@@ -1,22 +1,20 @@
-"""The run folder: written under a hidden name, renamed when complete, saved under a telling name when it ends early."""
+"""The run folder: written under a hidden name, renamed when complete, saved under a telling name when it ends early.
 
-import fcntl
+What each state of it on disk means to the next call stands in `run_remains.py`.
+"""
+
 import json
 import math
-import os
-import shutil
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 
-from . import exports, run_data, run_remains, signals
-from .errors import Interrupted, UsageError, one_line
+from . import checkpoint, exports, run_data, run_place, run_remains, signals, whole_files
+from .errors import Interrupted, UsageError, is_full, one_line
 from .postproc import quantities
 from .provenance import provenance
 
-LONGEST_NAME = 230  # bytes; a file system takes 255, and NAME.interrupted-2 or .NAME.part-PID must fit
 CONTRACT = ("particle_steps_per_second", "steps", "n_grains", "wall_s", "dt_over_critical")
 
 
@@ -32,10 +30,10 @@ class RunFolder:
 
     def __init__(self, parameters, *, study, figure=None):
         self.parameters, self.study, self.figure = parameters, study, figure
-        self.out = place_of(parameters.out)
-        self.path = self.out.with_name(f".{self.out.name}.part-{os.getpid()}")
+        self.out = run_place.place_of(parameters.out)
+        self.path = run_place.hidden(self.out, "part")
         self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
-        self.series, self.frames, self.lock, self.made = None, 0, None, []
+        self.series, self.frames, self.items, self.lock, self.made = None, 0, {}, None, []
         self.resumed, self.start, self.wall_before = None, time.monotonic(), 0.0
 
     def declare_series(self, **units):
@@ -44,7 +42,7 @@ class RunFolder:
             raise ValueError("the series are declared already")
         first = None
         if self.resumed:
-            first, _ = run_data.read_series(self.path / "resumed.h5", self.resumed["rows"])
+            first, _ = run_data.read_series(self.path / checkpoint.DATA, self.resumed["rows"])
         with signals.deferred():
             self.series = run_data.SeriesWriter(self.path / "run.h5", units, first)
 
@@ -61,7 +59,7 @@ class RunFolder:
         self.frames += 1
 
     def write(self, group, arrays, **attributes):
-        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group.
+        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group, none inside another.
 
         Names that `postproc.quantities` knows get their units from there.
         """
@@ -69,7 +67,7 @@ class RunFolder:
         arrays = quantities.labelled(group, arrays, system)
         attributes = quantities.with_units(group, attributes, system)
         with signals.deferred():
-            run_data.write_item(self.path / "items", group, arrays, attributes)
+            self.items[group] = run_data.write_item(self.path / "items", group, arrays, attributes)
 
     def note(self, **facts):
         """Add facts to the provenance: dt, dt_over_critical, n_grains, steps, particle_steps_per_second …"""
@@ -94,58 +92,71 @@ class RunFolder:
 
         `facts` are plain values; with resume=1 they come back in `resumed`, with the checkpoint's `folder` and `step`.
         """
-        if self.series is not None:
-            self.series.flush()
-        rows = self.series.rows if self.series is not None else 0
-        facts = {**facts, "step": step, "rows": rows, "frames": self.frames, "wall_s": self.wall_s}
-        facts["digest"] = self.parameters.digest()
+        facts = {**facts, "step": step, "frames": self.frames, "items": self.items, "wall_s": self.wall_s}
+        facts.update(digest=self.parameters.digest(), code_version=self.provenance["code_version"])
         with signals.deferred():
-            run_remains.write_checkpoint(self.path, save, facts)
+            if self.series is not None:
+                self.series.sync()
+            facts["rows"] = self.series.rows if self.series is not None else 0
+            facts["series"] = self.series.sum if self.series is not None else run_data.series_sum({}, {})
+            checkpoint.write(self.path, save, facts)
 
     def __enter__(self):
         try:
             with signals.deferred():
                 try:
-                    run_remains.look_around(self)
-                    self.make_part()
-                    exports.check(self.parameters.exports)
+                    self.begin()
                 except OSError as error:
+                    if is_full(error):
+                        raise
                     raise UsageError(
-                        f"out={one_line(self.parameters.out)} cannot be written ({error.strerror or type(error).__name__});"
+                        f"out={one_line(self.parameters.out)} cannot be written ({error.strerror or one_line(error)});"
                         " give out= a folder that you may write to"
                     ) from None
-                if self.parameters.resume:
-                    self.resume()
         except BaseException:
             self.close()
             self.remove_part()
             raise
         return self
 
-    def make_part(self):
-        """Make the folder to write in, hold its lock and say in it what run it is."""
-        for parent in reversed([p for p in self.path.parents if not p.exists()]):
+    def begin(self):
+        """Look at the place and at what killed runs left there, then make the folder to write in; with resume=1 fill it."""
+        for parent in reversed([p for p in self.out.parents if not p.exists()]):
             parent.mkdir()
             self.made.append(parent)
-        self.path.mkdir()
-        self.lock = open(self.path / ".lock", "w")
-        fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with run_place.held(self.out.parent):
+            run_remains.settle(self)
+            run_place.refuse_what_is_there(self)
+            run_place.refuse_at_work(self)
+            self.path.mkdir()
+            self.lock = run_place.take_lock(self.path)
         run_data.write_file(self.path / "about.h5", lambda file: self.describe(file, "running"))
+        exports.check(self.parameters.exports)
+        if self.parameters.resume:
+            self.resume()
 
     def resume(self):
         """Take over the checkpoint of an interrupted run of the same parameters, if there is one."""
         self.resumed = run_remains.adopt(self.path, self.out, self.parameters.digest())
         if self.resumed is None:
-            print(f"{self.study}: no interrupted run of these parameters to resume; starting anew", file=sys.stderr)
-        else:
-            self.frames, self.wall_before = self.resumed["frames"], self.resumed.get("wall_s", 0.0)
-            print(
-                f"{self.study}: going on from step {self.resumed['step']} of {self.resumed['remains']}", file=sys.stderr
-            )
+            self.say("no interrupted run of these parameters to resume; starting anew")
+            return
+        self.frames, self.wall_before = self.resumed["frames"], self.resumed["wall_s"]
+        self.items = dict(self.resumed["items"])
+        self.say(f"going on from step {self.resumed['step']} of {self.resumed['remains']}")
+        before, now = self.resumed["code_version"], self.provenance["code_version"]
+        if before != now:
+            self.note(code_version_before=before)
+            self.say(f"that was made by version {before}, this is {now}; the result will be of both")
+
+    def say(self, words):
+        """Say something on stderr in the name of the study."""
+        print(f"{self.study}: {words}", file=sys.stderr)
 
     def remove_part(self):
-        """Remove the folder to write in, and those parents that were made for it and are empty."""
-        shutil.rmtree(self.path, ignore_errors=True)
+        """Remove the folder to write in, if it is ours, and those parents that were made for it and are empty."""
+        if self.lock is not None and self.path.exists():
+            run_place.remove(self.path, self.out)
         for parent in reversed(self.made):
             if any(parent.iterdir()):
                 break
@@ -167,54 +178,51 @@ class RunFolder:
                 self.keep("interrupted" if issubclass(kind, (Interrupted, KeyboardInterrupt)) else "failed")
 
     def complete(self):
-        """Finish all files and give the folder its right name."""
-        self.finish_data("complete")
+        """Finish all files and give the folder its right name; from the moment that `run.h5` is whole nothing can be lost."""
+        self.provenance["wall_s"] = self.wall_s
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
         own = {name: unit for name, unit in self.units.items() if unit is not None}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
-        text = json.dumps(told, indent=2, allow_nan=False)
-        (self.path / "summary.json").write_text(text + "\n")
-        if self.figure is not None:
-            self.figure(self.path)
-        exports.write(self.path, self.parameters.exports)
-        self.close()
-        run_remains.clear_work_files(self.path)
-        run_remains.take_place(self.path, self.out, self.parameters.digest())
-        if self.resumed:
-            shutil.rmtree(self.resumed["remains"])
+        whole_files.write_text(self.path / "summary.json", json.dumps(told, indent=2, allow_nan=False) + "\n")
+        self.finish_data("complete")
+        run_remains.draw(self.path, self.figure, self.parameters.exports)
+        with run_place.held(self.out.parent):
+            self.close()
+            run_remains.take_name(self.path, self.out, self.parameters.digest())
 
     def keep(self, ending):
-        """Save what was measured as NAME.`ending`; remove the folder if nothing was."""
+        """Save what was measured as NAME.`ending`; remove the folder if nothing was, or no more than in what it went on from."""
         measured = self.resumed or self.frames or (self.series is not None and self.series.rows)
-        if not measured and not any(self.path.glob("checkpoint-*")):
+        if not measured and not checkpoint.folders(self.path):
             self.close()
             self.remove_part()
             return
         try:
+            self.provenance["wall_s"] = self.wall_s
             self.finish_data(ending)
         except (OSError, RuntimeError) as error:  # a full disk: what stands there now is all that there is
-            print(
-                f"{self.study}: the data so far are in {self.path}, unfinished: {one_line(error, 200)}", file=sys.stderr
-            )
+            self.say(f"the data so far are in {self.path}, unfinished: {one_line(error, 200)}")
             return
-        self.close()
-        run_remains.clear_work_files(self.path, keep_checkpoint=True)
-        kept = run_remains.free_name(self.out, ending)
-        os.rename(self.path, kept)
-        print(f"{self.study}: the data so far are kept in {kept}", file=sys.stderr)
+        with run_place.held(self.out.parent):
+            self.close()
+            kept = run_remains.keep(self.path, self.out, ending)
+        self.say(
+            f"the data so far are kept in {kept}" if kept else "earlier remains are as far as this run came; they stay"
+        )
 
     def finish_data(self, state):
         """Make the one plain `run.h5` of all that was written; `state` says how the run ended."""
-        self.provenance["wall_s"] = self.wall_s
         if self.series is not None:
             self.series.close()
         series = self.path / "run.h5" if self.series is not None else None
-        items = sorted((self.path / "items").glob("*.h5")) + list(self.path.glob("resumed.h5"))
+        items = sorted((self.path / "items").glob("*.h5")) + list(self.path.glob(checkpoint.DATA))
         run_data.merge(self.path / "run.h5", series, items, lambda file: self.describe(file, state))
 
     def describe(self, file, state):
         """Write parameters with units, and provenance, into an open HDF5 file."""
         file.attrs.update(state=state, study=self.study, digest=self.parameters.digest())
+        if self.resumed:
+            file.attrs[checkpoint.SOURCE] = self.resumed["remains"].name
         for key, value in self.parameters.taken().items():
             dataset = file.require_group("parameters").create_dataset(key, data="auto" if value is None else value)
             dataset.attrs["auto"] = getattr(self.parameters, key) is None
@@ -228,24 +236,6 @@ class RunFolder:
             self.series.close()
         if self.lock is not None:
             self.lock.close()
-
-
-def place_of(out):
-    """Return the absolute path of the run folder that `out` names; UsageError where it can name none."""
-    given = f"out={one_line(out)}"
-    try:
-        place = Path(out).expanduser().absolute()
-    except RuntimeError:
-        raise UsageError(
-            f"{given} begins with ~ and the name of no user; give another path, or ./~… for such a name"
-        ) from None
-    if place.name in ("", ".."):
-        raise UsageError(f"{given} is not the name of a run folder; give one below it")
-    if (length := len(os.fsencode(place.name))) > LONGEST_NAME:
-        raise UsageError(
-            f"{given} is a name of {length} bytes; at most {LONGEST_NAME} are possible, give a shorter one"
-        )
-    return place
 
 
 def plain(quantities):

@@ -1,183 +1,258 @@
-"""What stands where a run folder is to go: complete runs, runs at work, remains of killed ones, checkpoints."""
+"""What runs leave when they end early, and what the next call makes of it: a state machine over folders beside NAME.
 
-import fcntl
-import glob
-import json
-import os
+| on disk | how it came there | what the next call for NAME does |
+|---|---|---|
+| `NAME`, complete | the last rename of a good run | says so; redo=1 replaces it |
+| `NAME`, unreadable | damage | refuses it by name; redo=1 keeps it as `NAME.damaged` and runs again |
+| `.NAME.part-PID`, locked | a run at work | refuses |
+| part without rows, items, checkpoint | killed before its first row | removes it |
+| part with a growing `run.h5` | killed at work | gathers all into one `run.h5`, then as the next line |
+| part whose `run.h5` is `interrupted` or `failed` | killed while it was kept | keeps it as `NAME.interrupted` |
+| part whose `run.h5` is `complete` | killed between its last row and its name | draws what is missing, renames it `NAME` |
+| `.NAME.old-PID` | redo, killed between its two renames | gives it back its name, or removes it if `NAME` is there |
+| `.NAME.gone-PID` | killed while it was removed | removes it |
+| `NAME.interrupted`, `NAME.failed` | kept on purpose | resume=1 goes on from the furthest of the same parameters |
+
+Each step between them is one rename of something whole, so a kill can leave nothing else. A part that was resumed holds a copy
+of what it goes on from: it takes the place of those remains once it is further than they are, and counts for nothing before.
+So the furthest checkpoint is never removed before a further one stands. Remains are checked against the checksums in their
+checkpoint (`checkpoint.py`) before anything is taken from them.
+"""
+
+import re
 import shutil
 import sys
 
 import h5py
 
-from . import run_data
-from .errors import UsageError
+from . import checkpoint, exports, run_data, run_place, whole_files
+from .errors import UsageError, one_line
+from .parameters import known_formats
+
+ENDED = ("interrupted", "failed", "complete")  # states of a gathered run.h5
+WORK_FILES = ("items", ".lock", checkpoint.DATA, "about.h5")
 
 
-class AlreadyComplete(Exception):
-    """The run folder is there already and holds a complete run of the same parameters."""
+# ---- what killed runs left -------------------------------------------------------------------------------------------
 
 
-def look_around(run):
-    """Check the place of a `RunFolder`; raises AlreadyComplete or UsageError, and keeps what killed runs left."""
-    refuse_what_is_there(run)
-    pattern = f".{run.out.name}.part-"
-    siblings = [p for p in run.out.parent.iterdir() if p.name.startswith(pattern)] if run.out.parent.is_dir() else []
-    for part in siblings:
-        if is_alive(part):
-            raise UsageError(f"another run is writing out={run.parameters.out}; give another out=, or wait for it")
-        kept = recover(part, run.out)
-        if kept:
-            print(f"{run.study}: a killed run left data for this folder; they are kept in {kept}", file=sys.stderr)
+def settle(run):
+    """Bring all that killed runs left for a `RunFolder` into a lasting state; folders at work stay."""
+    restore_old(run.out)
+    for gone in run_place.hidden_ones(run.out, "gone"):
+        shutil.rmtree(gone, ignore_errors=True)
+    for part in run_place.hidden_ones(run.out, "part"):
+        if not run_place.is_alive(part):
+            settle_part(run, part)
 
 
-def refuse_what_is_there(run):
-    """Raise unless the place is free, an empty folder, or (with redo) holds the same run."""
-    given = f"out={run.parameters.out}"
-    if not run.out.exists():
+def restore_old(out):
+    """Give the run that a killed redo had moved away its name again; remove it if the new one had taken the place."""
+    for old in run_place.hidden_ones(out, "old"):
+        if out.exists():
+            run_place.remove(old, out)
+        else:
+            old.rename(out)
+
+
+def settle_part(run, part):
+    """Finish, keep or remove the folder of a killed run."""
+    state = attribute(part, "state")
+    if state == "complete" and finish_killed(run, part):
         return
-    if not run.out.is_dir():
-        raise UsageError(f"{given} is a file; give the name of a folder")
-    if not any(run.out.iterdir()):
+    if state not in ENDED and not gather(part):
+        run_place.remove(part, run.out)
         return
-    if stored_digest(run.out) is None:
-        raise UsageError(f"{given} holds something else than a complete run; give another out= or move it away")
-    if stored_digest(run.out) != run.parameters.digest():
-        raise UsageError(f"{given} holds a run of other parameters{difference(run)}; give another out= or move it away")
-    if not run.parameters.redo:
-        raise AlreadyComplete(f"{run.out} is there already, a complete run of these parameters (redo=1 runs it again)")
+    kept = keep(part, run.out, "failed" if state in ("failed", "complete") else "interrupted")
+    if kept:
+        say(run, f"a killed run left data for this folder; they are kept in {kept}")
 
 
-def stored_digest(path):
-    """Return the digest of the parameters of the complete run in folder `path`; None if there is no such run."""
+def say(run, words):
+    """Say something on stderr in the name of the study."""
+    print(f"{run.study}: {words}", file=sys.stderr)
+
+
+def finish_killed(run, part):
+    """Finish a part that was complete; False after a line that says why it cannot be."""
     try:
-        with h5py.File(path / "run.h5", "r") as file:
-            return str(file.attrs["digest"]) if file.attrs["state"] == "complete" else None
-    except (OSError, KeyError):
-        return None
+        with h5py.File(part / "run.h5", "r") as file:
+            digest, study = str(file.attrs["digest"]), str(file.attrs["study"])
+            formats = formats_of(file["parameters"])
+        draw(part, run.figure if study == run.study else None, formats)
+        take_name(part, run.out, digest)
+        say(run, f"a killed run was complete but for its name; it is in {run.out} now")
+    except (
+        Exception
+    ) as error:  # what a study's figure raises is its own; a place that is taken says where the run is kept
+        say(run, f"a killed run was complete, but cannot be finished: {type(error).__name__}: {one_line(error, 200)}")
+    return not part.exists()
 
 
-def difference(run):
-    """Return in words the first parameter in which the stored run differs: " (period=4.0 there)"."""
-    with h5py.File(run.out / "run.h5", "r") as file:
-        for key, value in run.parameters.identity().items():
-            if key not in run.parameters.__fields__:  # what a file that a parameter names holds
-                continue
-            there, asked = stored_value(file, key), "auto" if value is None else value
-            if asked not in there:
-                return f" ({key}={there[0]} there, {key}={asked} asked for)"
-    return " (a file that they name has changed)"
-
-
-def stored_value(file, key):
-    """Return the value of a parameter in an open `run.h5`; behind it "auto" where it was taken for that."""
-    if f"parameters/{key}" not in file["/"]:
-        return ("nothing",)
-    dataset = file[f"parameters/{key}"]
-    value = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
-    return (value, "auto") if dataset.attrs.get("auto", False) else (value,)
-
-
-def is_alive(part):
-    """True if a process still holds the lock of a folder being written."""
-    try:
-        with open(part / ".lock") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except FileNotFoundError:
+def gather(part):
+    """Make the one `run.h5` of what a killed run left in `part`; False if it had measured nothing."""
+    series = max([part / "run.h5", part / checkpoint.DATA], key=run_data.rows_in)
+    own = [item for item in sorted((part / "items").glob("*.h5")) if is_readable(item)]
+    measured = own or run_data.rows_in(series) > 0
+    if not measured and not checkpoint.folders(part):
         return False
-    except OSError:
+    (part / "summary.json").unlink(missing_ok=True)  # of a run that was killed before its data were complete
+    also = [file for file in (part / checkpoint.DATA, part / "about.h5") if is_readable(file)]
+    run_data.merge(
+        part / "run.h5",
+        series if run_data.rows_in(series) >= 0 else None,
+        own + also,
+        lambda file: copy_attributes(also, file),
+    )
+    return True
+
+
+def is_readable(path):
+    """True for an HDF5 file that can be opened."""
+    try:
+        h5py.File(path, "r").close()
         return True
-    return False
+    except run_data.UNREADABLE:
+        return False
 
 
-def recover(part, out):
-    """Make what a killed process left in `part` into NAME.interrupted; return its path, None if it held no data."""
-    series = part / "run.h5" if (part / "run.h5").exists() else None
-    items = sorted((part / "items").glob("*.h5"))
-    if series is None and not items:
-        shutil.rmtree(part, ignore_errors=True)
-        return None
-    if series is None or not is_merged(series):
-        items += [p for p in (part / "resumed.h5", part / "about.h5") if p.exists()]
-        run_data.merge(part / "run.h5", series, items, lambda file: copy_attributes(part / "about.h5", file))
-    clear_work_files(part, keep_checkpoint=True)
-    kept = free_name(out, "interrupted")
-    os.rename(part, kept)
-    return kept
-
-
-def is_merged(path):
-    """True for a finished `run.h5`, False for a file of series alone."""
-    with h5py.File(path, "r", libver="latest", swmr=True) as file:
-        return "state" in file.attrs
-
-
-def copy_attributes(about, file):
-    """Give an open HDF5 file the root attributes of `about.h5`, and the state of a run that did not end."""
-    if about.exists():
-        with h5py.File(about, "r") as source:
+def copy_attributes(sources, file):
+    """Give an open HDF5 file the root attributes of other files, and the state of a run that did not end."""
+    for path in sources:
+        with h5py.File(path, "r") as source:
             file.attrs.update(source.attrs)
     file.attrs["state"] = "interrupted"
 
 
+# ---- how a run ends --------------------------------------------------------------------------------------------------
+
+
+def draw(part, figure, formats):
+    """Give the folder of a run whose `run.h5` and `summary.json` are complete its figure and its frames in these formats.
+
+    All can be made again, so a kill in between costs nothing.
+    """
+    if figure is not None:
+        figure(part)
+    exports.write(part, formats)
+
+
+def formats_of(group):
+    """Return the formats of `exports` that the parameters in a `run.h5` ask for."""
+    asked = group["export"].asstr()[()] if "export" in group else ""
+    return known_formats(asked + ",vtk" * bool(group["vtk"][()]))
+
+
+def take_name(part, out, digest):
+    """Give a complete and drawn part its name; a run with resume=1 takes the place of what earlier ones left, too.
+
+    UsageError says where it is kept if the place cannot be taken.
+    """
+    for remains in replaced_by(part, out):
+        run_place.remove(remains, out)
+    clear_work_files(part)
+    run_place.take_place(part, out, digest)
+
+
+def keep(part, out, ending):
+    """Name a part whose `run.h5` is gathered NAME.`ending` and return that; None if it is no further than what is kept already.
+
+    Of runs with resume=1 only the furthest remains stay, so that those which fail again and again leave one folder.
+    """
+    others = {remains: reach(remains) for remains in replaced_by(part, out)}
+    own, source = reach(part), attribute(part, checkpoint.SOURCE)
+    if any(own <= its for remains, its in others.items() if remains.name == source or own[0] < 0):
+        run_place.remove(part, out)
+        return None
+    clear_work_files(part, keep_checkpoint=True)
+    whole_files.sync_tree(part)
+    for remains in [remains for remains, its in others.items() if its <= own]:
+        run_place.remove(remains, out)
+    kept = run_place.free_name(out, ending)
+    part.rename(kept)
+    whole_files.sync(out.parent)
+    return kept
+
+
+def replaced_by(part, out):
+    """Return the remains of the same parameters of which a run with resume=1, in `part`, takes the place; none for others."""
+    digest = attribute(part, "digest")
+    return [remains for remains in remains_of(out) if was_to_resume(part) and attribute(remains, "digest") == digest]
+
+
+def was_to_resume(part):
+    """True if the run whose gathered `run.h5` is in `part` was given resume=1."""
+    try:
+        with h5py.File(part / "run.h5", "r") as file:
+            return bool(file["parameters/resume"][()])
+    except run_data.UNREADABLE:
+        return False
+
+
+def attribute(folder, name):
+    """Return an attribute of the `run.h5` in a folder as text; None where there is none."""
+    try:
+        with h5py.File(folder / "run.h5", "r", libver="latest", swmr=True) as file:
+            return str(file.attrs[name])
+    except run_data.UNREADABLE:
+        return None
+
+
+def reach(folder):
+    """Return how far the data in a folder go: (step of its checkpoint, rows of series), to be compared."""
+    steps = [int(name.name.partition("-")[2]) for name in checkpoint.folders(folder)]
+    return max(steps, default=-1), run_data.rows_in(folder / "run.h5")
+
+
 def clear_work_files(path, keep_checkpoint=False):
-    """Remove from a run's folder what its `run.h5` now holds, the lock and, if not kept, the checkpoints."""
-    shutil.rmtree(path / "items", ignore_errors=True)
-    for name in ("resumed.h5", "about.h5", ".lock", "run.tmp"):
-        (path / name).unlink(missing_ok=True)
-    for folder in () if keep_checkpoint else path.glob("checkpoint-*"):
-        shutil.rmtree(folder)
+    """Remove from a run's folder what its `run.h5` now holds, the lock, what is half written and, if not kept, checkpoints."""
+    unneeded = [path / name for name in WORK_FILES] + [*path.glob("*.tmp"), *path.glob(".*.tmp")]
+    for file in unneeded + ([] if keep_checkpoint else list(path.glob("checkpoint-*"))):
+        if file.is_dir():
+            shutil.rmtree(file)
+        else:
+            file.unlink(missing_ok=True)
 
 
-def free_name(out, ending):
-    """Return the first of NAME.ending, NAME.ending-2, … that does not exist."""
-    names = (out.with_name(f"{out.name}.{ending}{suffix}") for suffix in [""] + [f"-{n}" for n in range(2, 10000)])
-    return next(name for name in names if not name.exists())
-
-
-def take_place(path, out, digest):
-    """Rename the complete folder `path` to `out`; an older run of the same parameters gives way, nothing else does."""
-    if out.is_dir() and any(out.iterdir()):
-        if stored_digest(out) != digest:
-            kept = free_name(out, "complete")
-            os.rename(path, kept)
-            raise UsageError(f"{out} was made by someone else meanwhile; this run is complete in {kept}")
-        old = out.with_name(f".{out.name}.old-{os.getpid()}")
-        os.rename(out, old)
-        os.rename(path, out)
-        shutil.rmtree(old)
-        return
-    os.rename(path, out)
-
-
-def write_checkpoint(path, save, facts):
-    """Have `save(folder)` write a checkpoint below `path`; it replaces the older one once it is whole."""
-    temporary = path / "checkpoint.tmp"
-    shutil.rmtree(temporary, ignore_errors=True)
-    temporary.mkdir()
-    save(temporary)
-    (temporary / "checkpoint.json").write_text(json.dumps(facts))
-    older = list(path.glob("checkpoint-*"))
-    os.rename(temporary, path / f"checkpoint-{facts['step']:012d}")
-    for folder in older:
-        shutil.rmtree(folder)
+# ---- going on --------------------------------------------------------------------------------------------------------
 
 
 def adopt(path, out, digest):
-    """Copy the furthest checkpoint of the same parameters, with its data, into `path`; return its facts or None."""
-    found = []
-    for remains in out.parent.glob(f"{glob.escape(out.name)}.*"):
-        for file in remains.glob("checkpoint-*/checkpoint.json"):
-            facts = json.loads(file.read_text())
-            if facts["digest"] == digest:
-                found.append((facts["step"], remains, file.parent.name, facts))
-    if not found:
-        return None
-    _, remains, checkpoint, facts = max(found, key=lambda f: f[0])
-    shutil.copytree(remains / checkpoint, path / checkpoint)
-    shutil.copy(remains / "run.h5", path / "resumed.h5")
-    with h5py.File(path / "resumed.h5", "r+") as file:
-        for group in ("parameters", "provenance"):
-            file.pop(group, None)
-        for frame in [name for name in file.get("frames", {}) if int(name) > facts["frames"]]:
-            del file["frames"][frame]
-    return {**facts, "folder": path / checkpoint, "remains": remains}
+    """Copy the furthest checkpoint of the same parameters that is whole, with its data, into `path`; return its facts or None.
+
+    The facts then have the checkpoint's `folder` and the name of the `remains`. Damaged remains are named on stderr where
+    others serve; where none do, UsageError says what is damaged and how to go on.
+    """
+    found, damaged = candidates(out, digest)
+    for facts, folder in sorted(found, key=lambda pair: -pair[0]["step"]):
+        try:
+            copied = checkpoint.take_over(folder.parent, facts, folder.name, path)
+        except checkpoint.Damaged as error:
+            damaged.append((str(error), folder.parent))
+        else:
+            for words, _ in damaged:
+                print(f"graindrive: {words}; it is passed over", file=sys.stderr)
+            return {**facts, "folder": copied, "remains": folder.parent}
+    if damaged:
+        words, remains = damaged[0]
+        raise UsageError(f"{words}; remove {remains.name} or move it away to start anew")
+    return None
+
+
+def candidates(out, digest):
+    """Return what remains of earlier runs: a list of (facts, folder) of checkpoints of this digest, one of (words, remains)."""
+    found, damaged = [], []
+    for remains in remains_of(out):
+        for folder in checkpoint.folders(remains):
+            try:
+                facts = checkpoint.read(folder)
+                found += [(facts, folder)] if facts["digest"] == digest else []
+            except checkpoint.Damaged as error:
+                damaged.append((str(error), remains))
+    return found, damaged
+
+
+def remains_of(out):
+    """Return the folders NAME.interrupted, NAME.failed-2 … beside `out`."""
+    name = re.compile(re.escape(out.name) + r"\.(interrupted|failed)(-\d+)?")
+    return sorted(path for path in out.parent.iterdir() if name.fullmatch(path.name) and path.is_dir())

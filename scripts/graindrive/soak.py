@@ -14,14 +14,13 @@ import argparse
 import csv
 import json
 import math
-import os
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 
-from . import engines, grain_loop, progress, scene, signals
+from . import engines, grain_loop, progress, scene, signals, whole_files
 from .errors import Interrupted, UsageError
 from .material import HertzHistoryMaterial
 
@@ -96,10 +95,8 @@ def rows_until(path, end):
 
 def rewrite(path, rows):
     """Write ledger.csv anew with these rows, beside it and renamed."""
-    beside = path.with_suffix(".part")
-    with open(beside, "w", newline="") as file:
+    with whole_files.written(path) as beside, open(beside, "w", newline="") as file:
         csv.writer(file).writerows([COLUMNS, *(map(repr, map(float, row)) for row in rows)])
-    os.replace(beside, path)
 
 
 def summary_of(rows, steps, grains, seconds):
@@ -166,9 +163,7 @@ def soak(out, steps, block, on_report=None):
 
 def write_summary(out, summary):
     """Write summary.json whole or not at all."""
-    beside = out / "summary.json.part"
-    beside.write_text(json.dumps(summary, indent=1) + "\n")
-    os.replace(beside, out / "summary.json")
+    whole_files.write_text(out / "summary.json", json.dumps(summary, indent=1) + "\n")
 
 
 def parser():

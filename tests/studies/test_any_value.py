@@ -10,7 +10,7 @@ from graindrive import headless
 from graindrive.command_line import parse
 from graindrive.errors import UsageError
 from graindrive.parameters import LIMITS, choices, plain_type
-from graindrive.run_folder import place_of
+from graindrive.run_place import place_of
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"
 STUDIES = {

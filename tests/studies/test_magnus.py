@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import headless, progress, recording
+from graindrive import headless, progress
 from graindrive.errors import EngineError, Interrupted, UsageError
 from graindrive.run_folder import RunFolder
 
@@ -131,7 +131,6 @@ def test_both_loops_give_the_same_forces_until_chaos(magnus, tmp_path):
 def test_an_interrupted_run_goes_on_as_if_it_had_not_been(magnus, tmp_path, monkeypatch, fields, wall_pressure):
     keys = dict(fields=fields, field_spacing=0.5, wall_pressure=wall_pressure)
     expected = carry_out(magnus, tmp_path / "whole", **keys)
-    monkeypatch.setattr(recording, "CHECKPOINT_SECONDS", 0)  # one after every block
     advance, blocks = progress.advance, iter(range(12))
 
     def stop_in_the_twelfth_block(steps):
@@ -141,7 +140,7 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(magnus, tmp_path, monk
 
     monkeypatch.setattr(progress, "advance", stop_in_the_twelfth_block)
     with pytest.raises(Interrupted):
-        carry_out(magnus, tmp_path / "parts", **keys)
+        carry_out(magnus, tmp_path / "parts", checkpoint_seconds=0, **keys)  # one after every block
     monkeypatch.setattr(progress, "advance", advance)
     found = carry_out(magnus, tmp_path / "parts", resume=True, **keys)
     assert all(np.array_equal(expected[name], found[name]) for name in expected)

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import intruder, packing, progress, recording
+from graindrive import intruder, packing, progress
 from graindrive.errors import Interrupted
 from graindrive.material import HertzHistoryMaterial
 from graindrive.run_folder import RunFolder
@@ -103,7 +103,6 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
     with RunFolder(whole, study="wiggle") as folder:
         wiggle.run(whole, folder)
 
-    monkeypatch.setattr(recording, "CHECKPOINT_SECONDS", 0)  # one after every block
     advance, blocks = progress.advance, iter(range(7))
 
     def stop_in_the_seventh_block(steps):
@@ -112,7 +111,7 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
         return advance(steps)
 
     monkeypatch.setattr(progress, "advance", stop_in_the_seventh_block)
-    parts = tiny(wiggle, loop=loop, out=str(tmp_path / "parts"))
+    parts = tiny(wiggle, loop=loop, out=str(tmp_path / "parts"), checkpoint_seconds=0)  # one after every block
     with pytest.raises(Interrupted), RunFolder(parts, study="wiggle") as folder:
         wiggle.run(parts, folder)
     monkeypatch.setattr(progress, "advance", advance)

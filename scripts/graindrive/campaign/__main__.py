@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from .. import signals
+from .. import output, signals
 from ..errors import UsageError
 from ..headless import guarded
 from ..postproc.campaign.report import write_report
@@ -59,6 +59,8 @@ def campaign(options):
 
 def make_runs(folder, plan, options, lock):
     """Have the missing runs made, if there are any."""
+    for line in execution.set_damaged_aside(folder, plan):
+        print(f"{NAME}: {line}", file=sys.stderr)
     todo = execution.missing(folder, plan)
     print(f"{NAME}: {len(plan.runs) - len(todo)} of {len(plan.runs)} runs are there already", file=sys.stderr)
     if todo:
@@ -86,4 +88,5 @@ def tell_failures(folder, plan):
 
 
 if __name__ == "__main__":
+    output.forgive()
     sys.exit(main(sys.argv[1:]))

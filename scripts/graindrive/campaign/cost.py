@@ -3,7 +3,7 @@
 import math
 import statistics
 
-from ..postproc.reader import Run
+from ..run_place import read_summary
 from .plan import report_module
 
 
@@ -36,7 +36,8 @@ def ratios(folder, plan, todo, estimate):
     """Return the measured over the estimated cost of each run that is there already."""
     left = {run.name for run in todo}
     done = [run for run in plan.runs if run.name not in left]
-    return [Run(folder / "runs" / run.name).summary["wall_s"] / estimate(run.parameters.dict()) for run in done]
+    taken = [(run, read_summary(folder / "runs" / run.name).get("wall_s")) for run in done]
+    return [seconds / estimate(run.parameters.dict()) for run, seconds in taken if seconds]
 
 
 def duration(seconds):

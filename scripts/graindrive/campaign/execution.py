@@ -10,8 +10,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from .. import whole_files
 from ..errors import Interrupted, UsageError
-from ..run_remains import stored_digest
+from ..run_place import damage, set_aside, stored_digest
 
 SNAKEFILE = Path(__file__).with_name("Snakefile")
 IN_THE_WAY = {getattr(errno, f"E{name}") for name in "ISDIR NOTDIR EXIST ACCES PERM ROFS NAMETOOLONG LOOP".split()}
@@ -43,7 +44,7 @@ def opened(folder, plan):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
-        write_json(folder / "campaign.json", as_plain(plan))
+        whole_files.write_text(folder / "campaign.json", json.dumps(as_plain(plan), indent=1) + "\n")
         yield lock
 
 
@@ -63,16 +64,18 @@ def as_plain(plan):
     }
 
 
-def write_json(path, content):
-    """Write JSON in one step."""
-    temporary = path.with_name(f".{path.name}.tmp")
-    temporary.write_text(json.dumps(content, indent=1) + "\n")
-    os.replace(temporary, path)
-
-
 def missing(folder, plan):
     """Return the planned runs that have no complete run folder."""
     return [run for run in plan.runs if stored_digest(folder / "runs" / run.name) != run.parameters.digest()]
+
+
+def set_damaged_aside(folder, plan):
+    """Move run folders that cannot be read out of the way, so that they are made again; return a line on each."""
+    places = {run.name: folder / "runs" / run.name for run in plan.runs}
+    found = {name: problem for name, place in places.items() if (problem := damage(place))}
+    return [
+        f"{problem}; it is kept as {set_aside(places[name]).name} and made again" for name, problem in found.items()
+    ]
 
 
 def set_marks(folder, plan):

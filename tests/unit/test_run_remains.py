@@ -1,0 +1,388 @@
+"""What runs leave when they end early, and what the next call makes of it; one process, without YADE."""
+
+import json
+import os
+import shutil
+
+import h5py
+import numpy as np
+import pytest
+
+from graindrive import checkpoint, recording, run_place, whole_files
+from graindrive.errors import UsageError
+from graindrive.parameters import StudyParameters, quantity
+from graindrive.run_folder import RunFolder
+from graindrive.run_place import AlreadyComplete
+
+STEPS = 8
+
+
+class Parameters(StudyParameters):
+    phi: float = quantity(0.35, "-", "a number that decides something", gt=0)
+
+
+@pytest.fixture
+def place(tmp_path):
+    return Place(tmp_path / "work")
+
+
+class Place:
+    """A folder with runs named `a`; makes runs in it that end as asked."""
+
+    def __init__(self, path):
+        self.path = path
+        path.mkdir()
+
+    def open(self, *, figure=None, **keys):
+        return RunFolder(Parameters(**{"out": str(self.path / "a"), **keys}), study="toy", figure=figure or draw)
+
+    def run(self, *, stop=None, checkpoint_at=4, **keys):
+        """Run to the end, or interrupted after the step `stop`; each step is a row, the checkpoint is taken at one of them."""
+        with self.open(**keys) as folder:
+            go_on(folder, stop, checkpoint_at)
+
+    def interrupted(self, **keys):
+        with pytest.raises(KeyboardInterrupt):
+            self.run(**{"stop": 6, **keys})
+
+    def names(self):
+        return sorted(p.name for p in self.path.iterdir())
+
+    def rows(self, name="a"):
+        with h5py.File(self.path / name / "run.h5") as file:
+            return list(file["series/x"])
+
+    def facts(self, name="a.interrupted"):
+        (file,) = (self.path / name).glob("checkpoint-*/checkpoint.json")
+        return file
+
+    def change(self, **changes):
+        """Change facts in the checkpoint that an interrupted run left."""
+        file = self.facts()
+        file.write_text(json.dumps({**json.loads(file.read_text()), **changes}))
+
+
+def draw(path):
+    (path / "figure.png").write_text("drawn")
+
+
+def go_on(folder, stop, checkpoint_at):
+    first = folder.resumed["step"] if folder.resumed else 0
+    track = recording.Track(folder)
+    folder.declare_series(x="d")
+    for step in range(first + 1, STEPS + 1):
+        folder.append(x=step**2)
+        track.append(dict(x=step**2))
+        if step % 3 == 0:
+            folder.frame(step, {"x": np.full(3, step)})
+        if step == checkpoint_at:
+            folder.checkpoint(track.save, step, note="toy")
+        if step == stop:
+            raise KeyboardInterrupt
+    folder.note(dt=1.0, dt_over_critical=0.1, n_grains=1, steps=STEPS, particle_steps_per_second=1.0)
+    folder.summarize(total=float(track.arrays()["x"].sum()))
+
+
+def killed(folder):
+    """Let go of the files of a run as the system does when it is killed; what it had not flushed is lost."""
+    if folder.series is not None:
+        folder.series.waiting = {name: [] for name in folder.series.waiting}
+        folder.series.file.close()
+    folder.lock.close()
+    return folder.path.rename(folder.path.with_name(".a.part-1"))  # another process
+
+
+WHOLE = [step**2 for step in range(1, STEPS + 1)]
+
+
+# ---- kills -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_resumed_run_that_is_killed_before_its_first_flush_counts_for_nothing(place, rows):
+    place.interrupted()
+    folder = place.open(resume=True)
+    folder.__enter__()
+    folder.declare_series(x="d")
+    for _ in range(rows):
+        folder.append(x=0)
+    part = killed(folder)
+    assert part.is_dir()
+    place.run(resume=True)
+    assert place.rows() == WHOLE and place.names() == ["a"]
+
+
+def test_of_several_remains_the_furthest_counts(place):
+    place.interrupted(checkpoint_at=2)
+    shutil.copytree(place.path / "a.interrupted", place.path / "a.failed")
+    shutil.rmtree(place.path / "a.interrupted")
+    place.interrupted(checkpoint_at=5)
+    with place.open(resume=True) as folder:
+        assert folder.resumed["step"] == 5
+        go_on(folder, None, 6)
+    assert place.rows() == WHOLE and place.names() == ["a"]
+
+
+@pytest.mark.parametrize("content", [b"", b"not HDF5", b"\x89HDF\r\n\x1a\n" + bytes(500)], ids=range(3))
+def test_unreadable_series_are_no_data(place, content):
+    part = place.path / ".a.part-1"
+    part.mkdir()
+    (part / "run.h5").write_bytes(content)
+    place.run()
+    assert place.rows() == WHOLE and place.names() == ["a"]
+
+
+def test_a_killed_removal_is_finished(place):
+    gone = place.path / ".a.gone-1"
+    (gone / "items").mkdir(parents=True)
+    place.run()
+    assert place.names() == ["a"]
+
+
+def test_a_run_that_was_complete_but_for_its_name_gets_it(place, capsys):
+    place.run()
+    os.rename(place.path / "a", place.path / ".a.part-1")
+    (place.path / ".a.part-1/figure.png").unlink()
+    with pytest.raises(AlreadyComplete):
+        place.run()
+    assert place.names() == ["a"] and (place.path / "a/figure.png").read_text() == "drawn"
+    assert "a killed run was complete but for its name" in capsys.readouterr().err
+
+
+def test_a_complete_run_that_cannot_be_drawn_does_not_wedge_its_place(place, capsys):
+    place.run()
+    os.rename(place.path / "a", place.path / ".a.part-1")
+    with pytest.raises(ZeroDivisionError):
+        place.run(figure=lambda path: 1 / 0)
+    assert "cannot be finished: ZeroDivisionError" in capsys.readouterr().err
+    assert place.rows("a.failed") == WHOLE
+
+
+def test_redo_that_is_killed_between_its_renames_leaves_the_old_result(place):
+    place.run()
+    os.rename(place.path / "a", place.path / ".a.old-1")
+    with pytest.raises(AlreadyComplete):
+        place.run()
+    assert place.rows() == WHOLE and place.names() == ["a"]
+
+
+def test_redo_that_fails_leaves_the_old_result(place, monkeypatch):
+    place.run()
+    rename = os.rename
+
+    def second_fails(source, target):
+        if str(target) == str(place.path / "a") and ".part-" in str(source):
+            raise OSError(18, "Invalid cross-device link")
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", second_fails)
+    with pytest.raises(UsageError, match="cannot be replaced .*; this run is complete in .*a.complete"):
+        place.run(redo=True)
+    assert place.rows() == place.rows("a.complete") == WHOLE and place.names() == ["a", "a.complete"]
+
+
+# ---- damage ----------------------------------------------------------------------------------------------------------
+
+
+def cut_series(place):
+    with h5py.File(place.path / "a.interrupted/run.h5", "r+") as file:
+        file["series/x"].resize((3,))
+
+
+def other_series(place):
+    with h5py.File(place.path / "a.interrupted/run.h5", "r+") as file:
+        file["series/x"][1] = 5.0
+
+
+def other_frame(place):
+    with h5py.File(place.path / "a.interrupted/run.h5", "r+") as file:
+        file["frames/0001/x"][0] = 5
+
+
+def half_series(place):
+    file = place.path / "a.interrupted/run.h5"
+    file.write_bytes(file.read_bytes()[:700])
+
+
+DAMAGE = {
+    "step": (lambda place: place.change(step=5), "checkpoint.json differs from its checksum"),
+    "stage": (lambda place: place.change(note="other"), "checkpoint.json differs from its checksum"),
+    "format": (
+        lambda place: place.change(format=1),
+        "checkpoint.json has format 1, this version of Graindrive reads 2",
+    ),
+    "no JSON": (lambda place: place.facts().write_text("{"), "checkpoint.json cannot be read"),
+    "a list": (lambda place: place.facts().write_text("[]"), "checkpoint.json cannot be read"),
+    "track": (
+        lambda place: (place.facts().parent / "track.npz").write_bytes(b"x"),
+        "track.npz differs from its checksum",
+    ),
+    "no track": (lambda place: (place.facts().parent / "track.npz").unlink(), "track.npz cannot be read"),
+    "cut series": (cut_series, "run.h5 holds 3 rows of the 4 that its checkpoint goes on from"),
+    "other series": (other_series, "run.h5 holds other series than its checkpoint goes on from"),
+    "other frame": (other_frame, "run.h5 holds another frames/0001 than its checkpoint goes on from"),
+    "half a file": (half_series, "run.h5 holds 0 rows of the 4"),
+    "no series": (lambda place: (place.path / "a.interrupted/run.h5").unlink(), "run.h5 holds 0 rows of the 4"),
+}
+
+
+@pytest.mark.parametrize("damage, words", DAMAGE.values(), ids=list(DAMAGE))
+def test_damaged_remains_are_one_line_with_the_file_and_the_way_out(place, damage, words):
+    place.interrupted()
+    damage(place)
+    for _ in range(2):
+        with pytest.raises(
+            UsageError, match=f"{words}.*; remove a.interrupted or move it away to start anew"
+        ) as caught:
+            place.run(resume=True)
+        assert "a.interrupted" in str(caught.value) and "\n" not in str(caught.value)
+        assert place.names() == ["a.interrupted"]
+    os.rename(place.path / "a.interrupted", place.path / "moved")
+    place.run(resume=True)
+    assert place.rows() == WHOLE
+
+
+def test_the_series_of_another_run_are_noticed(place):
+    place.interrupted()
+    place.interrupted(out=str(place.path / "b"), phi=0.8)
+    with h5py.File(place.path / "b.interrupted/run.h5", "r+") as file:
+        file["series/x"][:] += 1
+    shutil.copy(place.path / "b.interrupted/run.h5", place.path / "a.interrupted/run.h5")
+    with pytest.raises(UsageError, match="run.h5 holds other series"):
+        place.run(resume=True)
+
+
+def test_whole_remains_serve_where_further_ones_are_damaged(place, capsys):
+    place.interrupted(checkpoint_at=5)
+    os.rename(place.path / "a.interrupted", place.path / "a.failed")
+    place.interrupted(checkpoint_at=2)
+    other = place.path / "a.failed/checkpoint-000000000005/track.npz"
+    other.write_bytes(b"")
+    with place.open(resume=True) as folder:
+        assert folder.resumed["step"] == 2
+        go_on(folder, None, 6)
+    assert place.rows() == WHOLE and "track.npz differs from its checksum; it is passed over" in capsys.readouterr().err
+
+
+def test_remains_of_other_parameters_and_of_other_names_are_left_alone(place):
+    place.interrupted(phi=0.5)
+    place.interrupted(out=str(place.path / "a.b"))
+    place.run(resume=True)
+    assert place.names() == ["a", "a.b.interrupted", "a.interrupted"] and place.rows() == WHOLE
+
+
+def test_runs_that_fail_again_and_again_leave_one_folder(place):
+    def fails_at(step, **keys):
+        with pytest.raises(RuntimeError), place.open(**keys) as folder:
+            with pytest.raises(KeyboardInterrupt):
+                go_on(folder, step, step - 1)
+            raise RuntimeError
+
+    place.interrupted()
+    for step in (6, 7, 7, 7):
+        fails_at(step, resume=True)
+    assert place.names() == ["a.failed"] and place.rows("a.failed") == WHOLE[:7]
+    place.run(resume=True)
+    assert place.names() == ["a"] and place.rows() == WHOLE
+
+
+def test_a_run_that_goes_on_in_another_version_says_so(place, capsys, monkeypatch):
+    place.interrupted()
+    monkeypatch.setattr("graindrive.provenance.code_version", lambda: "9.9")
+    place.run(resume=True)
+    assert "this is 9.9; the result will be of both" in capsys.readouterr().err
+    with h5py.File(place.path / "a/run.h5") as file:
+        assert file["provenance"].attrs["code_version_before"] != "9.9"
+
+
+# ---- places ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_link_is_followed_at_the_start(place):
+    (place.path / "disk").mkdir()
+    (place.path / "disk/empty").mkdir()
+    (place.path / "a").symlink_to(place.path / "disk/empty")
+    place.run()
+    assert place.rows("disk/empty") == WHOLE and (place.path / "a").is_symlink()
+    with pytest.raises(AlreadyComplete):
+        place.run()
+    place.run(redo=True)
+    assert sorted(p.name for p in (place.path / "disk").iterdir()) == ["empty"]
+
+
+def test_a_dangling_link_is_refused_at_the_start(place):
+    (place.path / "a").symlink_to(place.path / "nowhere")
+    with pytest.raises(
+        UsageError, match="is a link to .*nowhere, which is not there; make that folder or remove the link"
+    ):
+        place.open()
+
+
+def test_a_mount_point_is_refused_at_the_start(place, monkeypatch):
+    with pytest.raises(UsageError, match="out=/proc is a mount point, .*; give one below it, out=/proc/run"):
+        place.open(out="/proc")
+    (place.path / "a").mkdir()
+    monkeypatch.setattr(os.path, "ismount", lambda path: str(path).endswith("/a"))
+    with pytest.raises(UsageError, match="is a mount point"):
+        place.open()
+
+
+@pytest.mark.parametrize(
+    "out, words",
+    [("/", "is not the name of a run folder"), ("~nosuchuser/x", "names a home"), ("n" * 240, "240|bytes")],
+)
+def test_a_name_that_no_run_folder_can_take_at_the_end_is_refused_at_the_start(place, out, words):
+    with pytest.raises(UsageError, match=words):
+        place.open(out=out)
+
+
+@pytest.mark.parametrize("file", ["run.h5", "summary.json"])
+def test_a_damaged_finished_run_is_named_and_made_again_with_redo(place, file):
+    place.run()
+    target = place.path / "a" / file
+    target.write_bytes(target.read_bytes()[:-20])
+    with pytest.raises(UsageError, match=f"holds a damaged run: .*{file} cannot be read .*redo=1 makes it again"):
+        place.run()
+    place.run(redo=True)
+    assert place.names() == ["a", "a.damaged"] and place.rows() == WHOLE
+
+
+# ---- what is on the disk when a name appears -------------------------------------------------------------------------
+
+
+def test_files_are_synced_before_they_get_their_name_and_folders_after(tmp_path, monkeypatch):
+    done, fsync, replace = [], os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda f: done.append(os.readlink(f"/proc/self/fd/{f}")) or fsync(f))
+    monkeypatch.setattr(os, "replace", lambda a, b: done.append("renamed") or replace(a, b))
+    whole_files.write_text(tmp_path / "summary.json", "{}")
+    assert done == [str(tmp_path / ".summary.json.tmp"), "renamed", str(tmp_path)]
+
+
+def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path):
+    (tmp_path / "x").write_text("old")
+    with pytest.raises(ZeroDivisionError), whole_files.written(tmp_path / "x") as temporary:
+        temporary.write_text("new")
+        1 / 0
+    assert [p.name for p in tmp_path.iterdir()] == ["x"] and (tmp_path / "x").read_text() == "old"
+
+
+def test_a_checkpoint_replaces_the_older_one_only_when_it_is_whole(tmp_path):
+    facts = dict(digest="d", rows=0, items={}, series="s")
+    checkpoint.write(tmp_path, lambda place: (place / "x").write_text("1"), dict(facts, step=1))
+    with pytest.raises(OSError):
+        checkpoint.write(tmp_path, lambda place: (place / "no/x").write_text("2"), dict(facts, step=2))
+    (folder,) = checkpoint.folders(tmp_path)
+    assert checkpoint.read(folder)["step"] == 1
+    checkpoint.write(tmp_path, lambda place: (place / "x").write_text("2"), dict(facts, step=2))
+    (folder,) = checkpoint.folders(tmp_path)
+    assert checkpoint.read(folder)["step"] == 2
+
+
+def test_two_processes_do_not_start_in_one_folder_at_once(tmp_path):
+    import fcntl
+
+    with run_place.held(tmp_path):
+        other = os.open(tmp_path, os.O_RDONLY)
+        with pytest.raises(BlockingIOError):
+            fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.close(other)
