@@ -17,8 +17,8 @@ namespace {
 
 constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead beside one misses it by 0.1 % of its radius [rad]
 constexpr Real largest_gap =
-	2.0;  // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
-constexpr Real touch = 1e-5;       // beads touch the outline if they are within this part of their radius of it [-]
+	2.0;                      // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
+constexpr Real touch = 1e-5;  // beads touch the outline if they are within this part of their radius of it [-]
 constexpr Real most_beads = 1e5;   // more would take minutes, and no grain could tell
 constexpr Real step_slack = 1e-5;  // steps may pass the asked one by rounded digits of a file, or 6 / 0.5 would give 13 beads [-]
 
@@ -39,10 +39,7 @@ void require_few_beads(Real length, Real longest_step)
 	throw std::invalid_argument(message.str());
 }
 
-int steps(Real length, Real longest_step)
-{
-	return std::max(1, static_cast<int>(std::ceil(length / longest_step - step_slack)));
-}
+int steps(Real length, Real longest_step) { return std::max(1, static_cast<int>(std::ceil(length / longest_step - step_slack))); }
 
 Points ring(Real disk_radius, Real bead_radius, Real longest_step)
 {

@@ -15,7 +15,7 @@ using namespace graindrive::shapes;
 
 namespace {
 
-constexpr Real round_off = 1e-12;  // of lengths of order 10: what CGAL's inexact constructions may leave
+constexpr Real round_off = 1e-12;  // of lengths of order 10: what the trimming of neighbours and a few roundings may leave
 
 Eigen::AlignedBox<Real, 2> box_of(const Points& centres, Real radius)
 {

@@ -30,8 +30,7 @@ std::vector<Entry> numbered(const std::vector<Box>& boxes)
 std::vector<Box> boxes_of_edges(const Points& corners)
 {
 	std::vector<Box> boxes;
-	for (std::size_t i = 0; i < corners.size(); ++i)
-		boxes.push_back(Box(corners[i]).extend(corners[(i + 1) % corners.size()]));
+	for (std::size_t i = 0; i < corners.size(); ++i) boxes.push_back(Box(corners[i]).extend(corners[(i + 1) % corners.size()]));
 	return boxes;
 }
 

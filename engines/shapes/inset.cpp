@@ -62,19 +62,27 @@ void trim(std::vector<Interval>& parts, const Raw& raw, const EdgeIndex& edges, 
 	}
 }
 
+/// Trims by all edges that can reach the part between `begin` and `end`.
+void trim_by_search(std::vector<Interval>& parts, const Interval& part, const Raw& raw, const EdgeIndex& edges, Real distance)
+{
+	const Stretch piece = raw.stretch.part(part.begin, part.end);
+	const Vector2r middle = piece.at(piece.length / 2);
+	const Real reach = distance * (1 + round_off), far = reach + piece.length / 2;
+	for (const std::size_t i : edges.near(grown(piece.box(), reach)))
+		if (distance_to_segment(middle, edges.corner(i), edges.corner(i + 1)) < far) trim(parts, raw, edges, i, distance);
+}
+
+/// The next few edges on either side often leave little or nothing for the search.
 std::vector<Stretch> trimmed(const Raw& raw, const EdgeIndex& edges, Real distance)
 {
 	const std::size_t n = edges.size();
 	std::vector<Interval> parts{ { 0, raw.stretch.length } };
-	for (const std::size_t beside : { 1, 2, 3 }) {  // these often leave nothing for the search
+	for (const std::size_t beside : { 1, 2, 3 }) {
 		trim(parts, raw, edges, (raw.last + beside) % n, distance);
 		trim(parts, raw, edges, (raw.first + 3 * n - beside) % n, distance);
 	}
-	if (parts.empty()) return {};
-	const Real far = distance * (1 + round_off) + raw.stretch.length / 2;
-	const Vector2r middle = raw.stretch.at(raw.stretch.length / 2);
-	for (const std::size_t i : edges.near(grown(raw.stretch.box(), distance * (1 + round_off))))
-		if (distance_to_segment(middle, edges.corner(i), edges.corner(i + 1)) < far) trim(parts, raw, edges, i, distance);
+	const std::vector<Interval> left = parts;
+	for (const Interval& part : left) trim_by_search(parts, part, raw, edges, distance);
 	std::sort(parts.begin(), parts.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
 	std::vector<Stretch> pieces;
 	for (const Interval& part : parts) pieces.push_back(raw.stretch.part(part.begin, part.end));

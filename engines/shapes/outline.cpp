@@ -27,10 +27,7 @@ std::string vertex_name(std::size_t index, const Vector2r& at)
 	return text.str();
 }
 
-Outline::Outline(const Points& vertices) : origin_(origin_near(vertices))
-{
-	corners_ = checked_polygon(vertices, origin_);
-}
+Outline::Outline(const Points& vertices) : origin_(origin_near(vertices)) { corners_ = checked_polygon(vertices, origin_); }
 
 Outline Outline::disk(Real diameter)
 {

@@ -12,7 +12,7 @@ namespace graindrive::shapes {
 
 using Points = std::vector<Vector2r>;
 
-constexpr Real largest_length = 1e50;   ///< of coordinates and diameters: fourth powers of lengths must be finite numbers
+constexpr Real largest_length = 1e50;    ///< of coordinates and diameters: fourth powers of lengths must be finite numbers
 constexpr Real smallest_length = 1e-50;  ///< of extents and diameters, for the same reason
 
 /// It keeps its vertices relative to an origin near the shape, so that what is computed of it loses no digits far away.

@@ -17,7 +17,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_vertices = 5000;  // of twice as many an inset takes a minute
-constexpr std::size_t most_given = 200000;    // before those on straight lines are left out
+constexpr std::size_t most_given = 200000;   // before those on straight lines are left out
 constexpr Real one_point = 1e-9;             // of the extent: vertices that are closer are one point [-]
 constexpr Real round_off = 1e-12;            // of the extent: below it, edges are one line [-]
 constexpr Real coarsest = 1e-8;              // of the extent: what a vertex's coordinates must resolve [-]

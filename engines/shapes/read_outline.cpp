@@ -72,7 +72,7 @@ bool is_header(const std::vector<std::string>& fields)
 {
 	return std::none_of(fields.begin(), fields.end(), [](const std::string& field) {
 		return field.empty() || std::isdigit(static_cast<unsigned char>(field[0])) || field.find_first_of("+-.,{}[(<") == 0 ||
-			   number(field);
+		       number(field);
 	});
 }
 

@@ -76,7 +76,8 @@ void bind_outline()
 		"Outer edge of an intruder: a checked simple polygon, or an exact circle (from outline_of('disk')).\n\n"
 		"Outline(vertices): array-like of shape (n, 2) [length], in either sense. Clockwise is turned round; repeated, closing "
 		"and\n"
-		"collinear vertices are dropped. Raises ValueError, naming the vertex, for vertices that are not finite or beyond 1e50, for\n"
+		"collinear vertices are dropped. Raises ValueError, naming the vertex, for vertices that are not finite or beyond 1e50, "
+		"for\n"
 		"a shape so far out that its coordinates do not resolve 1e-8 of its extent, for fewer than 3 different vertices or more\n"
 		"than 5,000, for no area, and for edges that cross or touch.",
 		py::no_init)
@@ -92,8 +93,7 @@ void bind_outline()
 			"the outline with its solid's centroid at (0, 0), with all its digits even if it lies far out")
 		.add_property("extent", &Outline::extent, "larger side of the box around the outline [length]")
 		.add_property("disk_radius", &Outline::disk_radius, "radius of an exact circle [length]; 0 for a polygon")
-		.def("turned", &Outline::turned, (py::arg("angle")),
-			"The outline turned counter-clockwise about (0, 0) by angle [rad].");
+		.def("turned", &Outline::turned, (py::arg("angle")), "The outline turned counter-clockwise about (0, 0) by angle [rad].");
 }
 
 void bind_clump()
@@ -109,7 +109,8 @@ void bind_clump()
 		"radius.\n\n"
 		"bead_diameter [length], mass [mass] of the whole clump, spacing: longest step between beads in bead diameters, in (0, "
 		"1].\n"
-		"Beads stand at every corner of the inset (arcs at reflex corners) and at equal steps between, within 1e-5 of their radius\n"
+		"Beads stand at every corner of the inset (arcs at reflex corners) and at equal steps between, within 1e-5 of their "
+		"radius\n"
 		"of touching; beads and inertia are as exact for an outline far from (0, 0) as for one about it.\n"
 		"Raises ValueError for a value out of range, for a shape too thin for the beads, and for more than 1e5 beads.");
 }

@@ -48,7 +48,7 @@ bool is_vertical(const Vector2r& edge, Real extent)
 bool is_vertical_at(const Vector2r& before, const Vector2r& here, const Vector2r& after, Real extent)
 {
 	return is_vertical(before - here, extent) || is_vertical(after - here, extent) ||
-		   (before.x() > here.x()) == (after.x() > here.x());
+	       (before.x() > here.x()) == (after.x() > here.x());
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ std::size_t surest_corner(const Points& corners)
 	Eigen::AlignedBox<Real, 2> box;
 	for (const Vector2r& corner : corners) box.extend(corner);
 	const auto distance = [&](const Vector2r& corner) { return (corner - box.center()).squaredNorm(); };
-	return std::max_element(corners.begin(), corners.end(),
-			   [&](const Vector2r& a, const Vector2r& b) { return distance(a) < distance(b); }) -
-		   corners.begin();
+	return std::max_element(corners.begin(), corners.end(), [&](const Vector2r& a, const Vector2r& b) {
+		return distance(a) < distance(b);
+	}) - corners.begin();
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ Interval line_in_capsule(const Vector2r& from, const Vector2r& heading, const Ve
 {
 	const Real length = (b - a).norm();
 	const Vector2r along = (b - a) / length, to = from - a;
-	const Interval strip = common(between(0, length, to.dot(along), heading.dot(along)),
-		between(-reach, reach, cross(along, to), cross(along, heading)));
+	const Interval strip = common(
+		between(0, length, to.dot(along), heading.dot(along)), between(-reach, reach, cross(along, to), cross(along, heading)));
 	return joined(strip, joined(line_in_disk(from, heading, a, reach), line_in_disk(from, heading, b, reach)));
 }
 
@@ -146,8 +146,8 @@ std::vector<Interval> without(const std::vector<Interval>& parts, const Interval
 {
 	std::vector<Interval> left;
 	for (const Interval& part : parts)
-		for (const Interval& piece : { Interval{ part.begin, std::min(part.end, hole.begin) },
-				 Interval{ std::max(part.begin, hole.end), part.end } })
+		for (const Interval& piece :
+			{ Interval{ part.begin, std::min(part.end, hole.begin) }, Interval{ std::max(part.begin, hole.end), part.end } })
 			if (piece.begin < piece.end) left.push_back(piece);
 	return left;
 }

@@ -13,10 +13,10 @@ struct Stretch {
 	Real radius = 0;                     ///< of the arc, run clockwise; 0 for a straight edge
 	Real length = 0;
 
-	Vector2r at(Real distance) const;                ///< the point `distance` along the stretch
-	Vector2r heading(Real distance) const;           ///< unit tangent there
-	Stretch part(Real begin, Real end) const;        ///< from `begin` to `end` along the stretch
-	Eigen::AlignedBox<Real, 2> box() const;          ///< a box around it
+	Vector2r at(Real distance) const;          ///< the point `distance` along the stretch
+	Vector2r heading(Real distance) const;     ///< unit tangent there
+	Stretch part(Real begin, Real end) const;  ///< from `begin` to `end` along the stretch
+	Eigen::AlignedBox<Real, 2> box() const;    ///< a box around it
 };
 
 Stretch straight(const Vector2r& from, const Vector2r& to);

@@ -30,9 +30,9 @@ TEST(Stretch, is_forbidden_just_where_its_points_are_closer_than_the_reach)
 	for (int trial = 0; trial < 20000; ++trial) {
 		const Vector2r a = place(), b = place();
 		const Vector2r out = left_of(place()), back = left_of(place());
-		const Stretch stretch = trial % 2 ? straight(place(), place())
-							  : cross(out, back) < 0 ? arc(out, back, Vector2r::Zero())
-												     : arc(back, out, Vector2r::Zero());
+		const Stretch stretch = trial % 2              ? straight(place(), place())
+		                        : cross(out, back) < 0 ? arc(out, back, Vector2r::Zero())
+		                                               : arc(back, out, Vector2r::Zero());
 		const auto found = closer_than(1, stretch, a, b);
 		for (int k = 0; k <= 10; ++k) {
 			const Real along = stretch.length * k / 10, off = distance_to_segment(stretch.at(along), a, b) - 1;

@@ -33,7 +33,8 @@ inline Real distance_to(const Outline& outline, const Vector2r& point)
 	const Vector2r seen = point - outline.origin();
 	const Points& v = outline.corners();
 	Real nearest = 1e300;
-	for (std::size_t i = 0; i < v.size(); ++i) nearest = std::min(nearest, distance_to_segment(seen, v[i], v[(i + 1) % v.size()]));
+	for (std::size_t i = 0; i < v.size(); ++i)
+		nearest = std::min(nearest, distance_to_segment(seen, v[i], v[(i + 1) % v.size()]));
 	return nearest;
 }
 

@@ -25,7 +25,8 @@ public:
 	{
 		skip_blanks();
 		std::string word;
-		while (place_ < text_.size() && is_letter(text_[place_])) word += std::toupper(static_cast<unsigned char>(text_[place_++]));
+		while (place_ < text_.size() && is_letter(text_[place_]))
+			word += std::toupper(static_cast<unsigned char>(text_[place_++]));
 		return word;
 	}
 
@@ -195,8 +196,8 @@ Points vertices_in_wkt(const std::string& text)
 	Scanner scanner(plain);
 	Tag tag = tag_of(scanner.word());
 	if (tag.geometry != "POLYGON" && tag.geometry != "MULTIPOLYGON")
-		throw std::invalid_argument("an outline must be one WKT POLYGON, got a " + tag.geometry +
-									"; save the outer ring alone as POLYGON ((x y, ...))");
+		throw std::invalid_argument(
+			"an outline must be one WKT POLYGON, got a " + tag.geometry + "; save the outer ring alone as POLYGON ((x y, ...))");
 	std::string word = scanner.word();
 	if (is_dimension(word)) tag.dimension = word, word = scanner.word();
 	if (word == "EMPTY") throw std::invalid_argument("the WKT " + tag.geometry + " is EMPTY" + an_outline_is);
