@@ -39,6 +39,7 @@ void GrainLoop::write_bodies()
 void GrainLoop::sync()
 {
 	if (!stepper_ || !scene || read_from_ != scene) return;
+	stepper_->take_back_body_forces();  // they have moved springs that are shown here
 	// YADE counts the windings of a periodic box. No sum over syncs: results must not depend on how often somebody looks.
 	const auto unwound = [](Real now, Real before, Real period) {
 		return period > 0 ? now + period * std::nearbyint((before - now) / period) : now;

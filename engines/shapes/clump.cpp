@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "engines/shapes/edge_index.hpp"
 #include "engines/shapes/inset.hpp"
 #include "engines/shapes/solid.hpp"
 
@@ -16,10 +17,10 @@ namespace {
 
 constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead beside one misses it by 0.1 % of its radius [rad]
 constexpr Real largest_gap =
-	2.0;  // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
-constexpr Real degeneracy = 1e-9;  // beads may stand this part of their radius off the outline where CGAL needs a nudge [-]
-constexpr Real most_steps = 1e5;   // between two corners: more would take minutes, and no grain could tell
-constexpr Real step_slack = 1e-9;  // a step may pass the asked one by round-off, or 6 / 0.5 would give 13 beads [-]
+	2.0;                      // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
+constexpr Real touch = 1e-5;  // beads touch the outline if they are within this part of their radius of it [-]
+constexpr Real most_beads = 1e5;   // more would take minutes, and no grain could tell
+constexpr Real step_slack = 1e-5;  // steps may pass the asked one by rounded digits of a file, or 6 / 0.5 would give 13 beads [-]
 
 void require(bool holds, const char* rule, Real got)
 {
@@ -29,18 +30,22 @@ void require(bool holds, const char* rule, Real got)
 	throw std::invalid_argument(message.str());
 }
 
-int steps(Real length, Real longest_step)
+void require_few_beads(Real length, Real longest_step)
 {
-	const Real n = std::ceil(length / longest_step - step_slack);
-	require(n <= most_steps, "an outline takes at most 1e5 beads from corner to corner; take larger beads or a wider spacing", n);
-	return std::max(1, static_cast<int>(n));
+	if (length <= most_beads * longest_step) return;
+	std::ostringstream message;
+	message << "an outline takes at most 1e5 beads, but steps of " << longest_step << " along " << length
+			<< " would take more; take larger beads or a wider spacing";
+	throw std::invalid_argument(message.str());
 }
 
-Points ring(const Outline& disk, Real bead_radius, Real longest_step)
+int steps(Real length, Real longest_step) { return std::max(1, static_cast<int>(std::ceil(length / longest_step - step_slack))); }
+
+Points ring(Real disk_radius, Real bead_radius, Real longest_step)
 {
-	const Real radius = disk.disk_radius() - bead_radius;
-	require(radius >= 0, "bead diameter must not exceed the disk's; take smaller beads", 2 * bead_radius);
-	if (radius == 0) return { disk.disk_centre() };
+	const Real radius = disk_radius - bead_radius;
+	if (radius <= 0) return { Vector2r::Zero() };
+	require_few_beads(2 * pi * radius, longest_step);
 	const Real chord = std::min(1.0, longest_step / (2 * radius));
 	const int quarter = steps(pi / 2, 2 * std::asin(chord));
 	Points centres;
@@ -48,7 +53,7 @@ Points ring(const Outline& disk, Real bead_radius, Real longest_step)
 		const Real angle = (pi / 2) * (i % quarter) / quarter;
 		Vector2r out(radius * std::cos(angle), radius * std::sin(angle));
 		for (int turn = 0; turn < i / quarter; ++turn) out = Vector2r(-out.y(), out.x());  // exact quarter turns
-		centres.push_back(disk.disk_centre() + out);
+		centres.push_back(out);
 	}
 	return centres;
 }
@@ -56,7 +61,7 @@ Points ring(const Outline& disk, Real bead_radius, Real longest_step)
 bool is_corner(const Stretch& before, const Stretch& after)
 {
 	const Vector2r in = before.heading(before.length), out = after.heading(0);
-	return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > curve_turn;
+	return std::abs(std::atan2(cross(in, out), in.dot(out))) > curve_turn;
 }
 
 /// The path turned so that it starts at a corner, if it has one.
@@ -86,6 +91,9 @@ void place(const std::vector<Stretch>& path, std::size_t first, std::size_t last
 
 Points along(const std::vector<Stretch>& path, Real longest_step)
 {
+	Real length = 0;
+	for (const Stretch& stretch : path) length += stretch.length;
+	require_few_beads(length, longest_step);
 	Points centres;
 	std::size_t first = 0;
 	for (std::size_t i = 1; i <= path.size(); ++i) {
@@ -96,62 +104,87 @@ Points along(const std::vector<Stretch>& path, Real longest_step)
 	return centres;
 }
 
+/// Which beads lie near a place.
+BoxIndex index_of(const Points& centres)
+{
+	std::vector<Box> boxes;
+	for (const Vector2r& centre : centres) boxes.emplace_back(centre);
+	return BoxIndex(boxes);
+}
+
+Real nearest_of(const Points& centres, const Vector2r& vertex)
+{
+	Real nearest = std::numeric_limits<Real>::infinity();
+	for (const Vector2r& centre : centres) nearest = std::min(nearest, (centre - vertex).norm());
+	return nearest;
+}
+
 /// Where arms thinner than a bead or very sharp corners were lost, the envelope is no longer the outline.
 void require_covered(const Outline& outline, const Points& centres, Real bead_radius)
 {
-	for (std::size_t i = 0; i < outline.vertices().size(); ++i) {
-		const Vector2r& vertex = outline.vertices()[i];
-		Real nearest = std::numeric_limits<Real>::infinity();
-		for (const Vector2r& centre : centres) nearest = std::min(nearest, (centre - vertex).norm());
-		const Real gap = (nearest - bead_radius) / (2 * bead_radius);
-		if (gap <= largest_gap) continue;
+	const Real far = bead_radius * (1 + 2 * largest_gap);
+	const BoxIndex index = index_of(centres);
+	for (std::size_t i = 0; i < outline.corners().size(); ++i) {
+		const Vector2r& corner = outline.corners()[i];
+		const auto near = index.near(grown(Box(corner), far));
+		if (std::any_of(near.begin(), near.end(), [&](std::size_t k) { return (centres[k] - corner).norm() <= far; })) continue;
 		std::ostringstream message;
-		message << "outline is too thin for beads of diameter " << 2 * bead_radius << ": the nearest bead stays " << gap
-				<< " diameters away from " << vertex_name(i, vertex) << ", allowed are " << largest_gap
+		message << "outline is too thin for beads of diameter " << 2 * bead_radius << ": the nearest bead stays "
+				<< (nearest_of(centres, corner) - bead_radius) / (2 * bead_radius) << " diameters away from "
+				<< vertex_name(i, outline.origin() + corner) << ", allowed are " << largest_gap
 				<< "; take smaller beads, or blunt or thicken the shape there";
 		throw std::invalid_argument(message.str());
 	}
 }
 
-bool stay_inside(const Outline& outline, const Points& centres, Real bead_radius)
+/// The inset is made of the outline less its straightest vertices, and joined within a tolerance: the beads have the last word.
+void require_touching(const Outline& outline, const Points& centres, Real bead_radius)
 {
-	return std::all_of(centres.begin(), centres.end(),
-		[&](const Vector2r& centre) { return distance_to(outline, centre) >= bead_radius * (1 - degeneracy); });
+	const EdgeIndex edges(outline.corners());
+	for (const Vector2r& centre : centres) {
+		const Real off = edges.distance(centre, 2 * bead_radius) / bead_radius - 1;
+		if (std::abs(off) <= touch) continue;
+		std::ostringstream message;
+		message << "beads of diameter " << 2 * bead_radius << " must touch the outline, but one is off by " << off
+				<< " of its radius; change the bead diameter a little, or leave out vertices that are finer than a bead";
+		throw std::invalid_argument(message.str());
+	}
 }
 
-/// CGAL's offset may go wrong if an edge shrinks to nothing at just this distance, as on a tooth exactly one bead wide.
-Points inside(const Outline& outline, Real bead_radius, Real longest_step)
+/// Centres of the beads relative to the outline's origin.
+Points beads_about_origin(const Outline& outline, Real bead_diameter, Real spacing)
 {
-	for (const Real distance : { bead_radius, bead_radius * (1 + degeneracy) }) {
-		const Points centres = along(from_a_corner(inset(outline, distance)), longest_step);
-		if (stay_inside(outline, centres, bead_radius)) return centres;
-	}
-	std::ostringstream message;
-	message << "outline must let beads of diameter " << 2 * bead_radius
-			<< " roll along its inside, but no inset was found; change the bead diameter a little";
-	throw std::invalid_argument(message.str());
+	require(std::isfinite(bead_diameter) && bead_diameter > 0, "bead diameter must be positive and finite", bead_diameter);
+	require(std::isfinite(spacing) && spacing > 0 && spacing <= 1,
+		"bead spacing must lie in (0, 1] bead diameters, or grains could fall between beads", spacing);
+	const Real radius = bead_diameter / 2, longest_step = spacing * bead_diameter;
+	require(bead_diameter <= outline.extent(),
+		"bead diameter must not exceed the outline's extent, or not one bead fits inside; take smaller beads", bead_diameter);
+	require_few_beads(2 * outline.extent(), longest_step);
+	if (outline.is_disk()) return ring(outline.disk_radius(), radius, longest_step);
+	const Points centres = along(from_a_corner(inset(outline, radius)), longest_step);
+	require_covered(outline, centres, radius);
+	require_touching(outline, centres, radius);
+	return centres;
 }
 
 }  // namespace
 
 Points beads(const Outline& outline, Real bead_diameter, Real spacing)
 {
-	require(bead_diameter > 0 && std::isfinite(bead_diameter), "bead diameter must be positive and finite", bead_diameter);
-	require(spacing > 0 && spacing <= 1, "bead spacing must lie in (0, 1] bead diameters, or grains could fall between beads",
-		spacing);
-	const Real radius = bead_diameter / 2, longest_step = spacing * bead_diameter;
-	if (outline.is_disk()) return ring(outline, radius, longest_step);
-	const Points centres = inside(outline, radius, longest_step);
-	require_covered(outline, centres, radius);
+	Points centres = beads_about_origin(outline, bead_diameter, spacing);
+	for (Vector2r& centre : centres) centre += outline.origin();
 	return centres;
 }
 
 Clump clump_of(const Outline& outline, Real bead_diameter, Real mass, Real spacing)
 {
-	require(mass > 0 && std::isfinite(mass), "mass must be positive and finite", mass);
+	require(std::isfinite(mass) && mass > 0, "mass must be positive and finite", mass);
 	const Solid solid = solid_of(outline);
-	Clump clump{ beads(outline, bead_diameter, spacing), bead_diameter / 2, mass, mass * solid.second_moment };
-	for (Vector2r& centre : clump.beads) centre -= solid.centroid;
+	const Real inertia = mass * solid.second_moment;
+	require(std::isnormal(inertia), "mass must give a moment of inertia that is a positive and finite number; change it", mass);
+	Clump clump{ beads_about_origin(outline, bead_diameter, spacing), bead_diameter / 2, mass, inertia };
+	for (Vector2r& centre : clump.beads) centre -= solid.from_origin;
 	return clump;
 }
 

@@ -16,10 +16,12 @@ struct Clump {
 ///
 /// They stand at every corner of the inset by a bead radius, and between corners at equal steps of at most `spacing` bead
 /// diameters. Convex corners of the envelope are thus rounded by the bead radius. Turns below 0.1 rad count as part of a curve.
+/// Every bead is within 1e-5 of its radius of touching; steps may pass the asked one by as much, for digits that a file rounds.
 /// On a disk the number of beads is a multiple of four, so that its extents along x and y are exact.
 /// @throws std::invalid_argument unless bead_diameter > 0 and 0 < spacing <= 1, and if the shape is too thin for the beads
 Points beads(const Outline& outline, Real bead_diameter, Real spacing = 1);
 
+/// Beads and inertia are computed near the outline and so are as exact far from the point (0, 0) as about it.
 /// @throws std::invalid_argument as `beads`, and unless mass > 0
 Clump clump_of(const Outline& outline, Real bead_diameter, Real mass, Real spacing = 1);
 

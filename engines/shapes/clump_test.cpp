@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engines/shapes/built_in.hpp"
-#include "engines/shapes/inset.hpp"
 #include "engines/shapes/solid.hpp"
 #include "engines/shapes/test_support.hpp"
 
@@ -15,7 +15,7 @@ using namespace graindrive::shapes;
 
 namespace {
 
-constexpr Real round_off = 1e-12;  // of lengths of order 10: what CGAL's inexact constructions may leave
+constexpr Real round_off = 1e-12;  // of lengths of order 10: what the trimming of neighbours and a few roundings may leave
 
 Eigen::AlignedBox<Real, 2> box_of(const Points& centres, Real radius)
 {
@@ -147,13 +147,14 @@ TEST(Beads, stay_inside_teeth_exactly_one_bead_wide)
 TEST(Beads, refuse_shapes_that_are_too_thin_for_them)
 {
 	EXPECT_TRUE(mentions(complaint([] { beads(outline_of("wide", { 9, 0.4 }), 0.5); }), "not one bead fits"));
+	EXPECT_TRUE(mentions(complaint([] { beads(outline_of("wide", { 9, 0.4 }), 10); }), "not one bead fits"));
 	const Outline dumbbell({ { 0, 0 }, { 4, 0 }, { 4, 1.9 }, { 6, 1.9 }, { 6, 0 }, { 10, 0 }, { 10, 4 }, { 6, 4 }, { 6, 2.1 },
 		{ 4, 2.1 }, { 4, 4 }, { 0, 4 } });
 	EXPECT_TRUE(mentions(complaint([&] { beads(dumbbell, 0.5); }), "2 separate rings"));
 	const Outline flag({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0.3, 4 }, { 0.3, 9 }, { 0, 9 } });
 	const std::string pole = complaint([&] { beads(flag, 0.5); });
 	EXPECT_TRUE(mentions(pole, "(0.3, 9)") || mentions(pole, "(0, 9)")) << pole;
-	EXPECT_TRUE(mentions(complaint([] { beads(Outline::disk(0.4), 0.5); }), "must not exceed the disk's"));
+	EXPECT_TRUE(mentions(complaint([] { beads(Outline::disk(0.4), 0.5); }), "must not exceed the outline's extent"));
 }
 
 TEST(Beads, refuse_sizes_and_spacings_out_of_range)
@@ -167,6 +168,89 @@ TEST(Beads, refuse_sizes_and_spacings_out_of_range)
 	EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, 1.01); }), "got 1.01"));
 	EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, 1e-12); }), "at most 1e5 beads"));
 	EXPECT_TRUE(mentions(complaint([&] { beads(outline_of("disk"), 1e-9); }), "at most 1e5 beads"));
+	for (const Real tiny : { 1e-300, 5e-324 }) {
+		EXPECT_TRUE(mentions(complaint([&] { beads(square, tiny); }), "at most 1e5 beads"));
+		EXPECT_TRUE(mentions(complaint([&] { beads(square, 0.5, tiny); }), "at most 1e5 beads"));
+	}
+	for (const Real huge : { 1e154, 1e308 })
+		EXPECT_TRUE(mentions(complaint([&] { beads(square, huge); }), "must not exceed the outline's extent"));
+	EXPECT_TRUE(mentions(complaint([&] { clump_of(square, 0.5, 5e-324); }), "moment of inertia"));
+	EXPECT_TRUE(mentions(complaint([&] { clump_of(square, 0.5, 1.7e308); }), "moment of inertia"));
+}
+
+namespace {
+
+Real rounded(Real value, int digits) { return std::round(value * std::pow(10, digits)) / std::pow(10, digits); }
+
+/// A square of side 6, turned, with points between its corners, as a file with that many decimals holds it.
+Points littered_square(int points_per_side, int digits, const Vector2r& at)
+{
+	const Points corners = outline_of("square", { 6 }, 0.35).vertices();
+	Points vertices;
+	for (int i = 0; i < 4; ++i)
+		for (int k = 0; k < points_per_side; ++k) {
+			const Vector2r p = at + corners[i] + (corners[(i + 1) % 4] - corners[i]) * k / points_per_side;
+			vertices.emplace_back(rounded(p.x(), digits), rounded(p.y(), digits));
+		}
+	return vertices;
+}
+
+void expect_touching(const Outline& outline, Real bead_diameter)
+{
+	for (const Vector2r& c : beads(outline, bead_diameter))
+		EXPECT_NEAR(distance_to(outline, c), bead_diameter / 2, 1e-5 * bead_diameter / 2);  // what `beads` promises
+}
+
+}  // namespace
+
+TEST(Beads, of_a_square_do_not_feel_points_between_its_corners)
+{
+	for (const auto& [points, digits] : { std::pair{ 2, 6 }, { 3, 9 }, { 7, 6 }, { 50, 9 }, { 2, 12 } })
+		for (const Vector2r& at : { Vector2r(0, 0), Vector2r(5e6, -3.5e6) }) {
+			const Points clean = clump_of(outline_of("square", { 6 }, 0.35), 0.5, 1).beads;
+			const Points found = clump_of(Outline(littered_square(points, digits, at)), 0.5, 1).beads;
+			ASSERT_EQ(found.size(), clean.size()) << points << " points, " << digits << " digits";
+			for (const Vector2r& bead : found) {
+				Real nearest = 1;
+				for (const Vector2r& other : clean) nearest = std::min(nearest, (bead - other).norm());
+				// Rounding moves corners by 0.7e-6 and coordinates of 5e6 hold 1e-9; corners shift beads by at most twice that.
+				EXPECT_LT(nearest, 3e-6 + 3e-9);
+			}
+		}
+}
+
+TEST(Beads, touch_an_outline_far_away_from_the_origin)
+{
+	for (const Real bead : { 1.0, 0.5 }) {
+		expect_touching(Outline(littered_square(3, 9, { 5e6, -3.5e6 })), bead);
+		expect_touching(Outline(littered_square(3, 9, { 0, 1e7 })), bead);
+	}
+}
+
+TEST(Beads, touch_stars_with_thousands_of_vertices)
+{
+	for (const int corners : { 500, 5000 }) {
+		Points star, circle;
+		for (int i = 0; i < corners; ++i) {
+			const Real angle = 2 * pi * i / corners;
+			circle.emplace_back(3.5 * std::cos(angle), 3.5 * std::sin(angle));
+			star.push_back(circle.back() * (i % 2 ? 1 : 0.93));
+		}
+		for (const Real bead : { 0.5, 2.0 }) {
+			expect_touching(Outline(star), bead);
+			expect_touching(Outline(circle), bead);
+		}
+	}
+}
+
+TEST(Beads, touch_where_the_inset_is_cut_by_edges_that_are_not_neighbours)
+{
+	// A groove narrower than the bead: its mouth's two corners are rolled round, its bottom is out of reach.
+	const Outline groove({ { 0, 0 }, { 8, 0 }, { 8, 4 }, { 4.3, 4 }, { 4.3, 3 }, { 3.7, 3 }, { 3.7, 4 }, { 0, 4 } });
+	expect_touching(groove, 1);
+	expect_touching(groove, 0.5);
+	// A short edge between two long ones that vanishes in the inset.
+	expect_touching(Outline({ { 0, 0 }, { 8, 0 }, { 8, 3.9 }, { 7.9, 4 }, { 0.1, 4 }, { 0, 3.9 } }), 1);
 }
 
 TEST(Clump, has_the_solids_mass_and_inertia_about_its_centroid)
@@ -176,4 +260,18 @@ TEST(Clump, has_the_solids_mass_and_inertia_about_its_centroid)
 	EXPECT_DOUBLE_EQ(clump.mass, 12);
 	EXPECT_NEAR(clump.inertia, 12 * 16.0 / 6, round_off);
 	EXPECT_NEAR(box_of(clump.beads, clump.bead_radius).center().norm(), 0, round_off);
+}
+
+TEST(Clump, stands_about_the_centroid_far_out_as_about_the_origin)
+{
+	const Points boot{ { 0, 0 }, { 9, 0 }, { 9, 3 }, { 4, 3 }, { 4, 10 }, { 0, 10 } };
+	Points far;
+	for (const Vector2r& v : boot) far.push_back(v + Vector2r(1 << 23, -3 << 21));  // sums without round-off
+	const Clump here = clump_of(Outline(boot), 0.5, 7), there = clump_of(Outline(far), 0.5, 7);
+	ASSERT_EQ(here.beads.size(), there.beads.size());
+	EXPECT_NEAR(here.inertia, there.inertia, 1e-13 * here.inertia);
+	for (std::size_t i = 0; i < here.beads.size(); ++i) EXPECT_LT((here.beads[i] - there.beads[i]).norm(), round_off);
+	// The beads' envelope begins where the outline does, at (0, 0); its centroid is (3.22727, 4.04545).
+	const Vector2r lowest_left = box_of(here.beads, here.bead_radius).min();
+	EXPECT_LT((lowest_left + Vector2r(355.0 / 110, 445.0 / 110)).norm(), round_off);
 }

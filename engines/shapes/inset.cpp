@@ -1,27 +1,23 @@
-/// Inset by CGAL's straight skeleton (Aichholzer, Aurenhammer, Alberts, Gaertner, J. UCS 1, 752 (1995)), arcs added.
+/// Shifted edges and arcs, trimmed by what is closer, then joined in the order in which they touch the outline.
 #include "engines/shapes/inset.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_2.h>
-#include <CGAL/create_offset_polygons_2.h>
-#include <CGAL/create_straight_skeleton_2.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
+
+#include "engines/shapes/edge_index.hpp"
+#include "engines/shapes/straighten.hpp"
 
 namespace graindrive::shapes {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Polygon = CGAL::Polygon_2<Kernel>;
-
-Real cross(const Vector2r& a, const Vector2r& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-Vector2r left_of(const Vector2r& edge) { return Vector2r(-edge.y(), edge.x()).normalized(); }
+// All of the distance of the inset [-]:
+constexpr Real straight_within = 1e-6;  // a vertex closer to the line is none
+constexpr Real round_off = 1e-12;       // an edge's neighbours may be this much closer, other edges must be this much farther
+constexpr Real joint = 1e-5;            // stretches whose ends are this close are joined
+constexpr Real nudge = 1e-7;            // by which the inset is moved inwards if round-off has left it open
 
 [[noreturn]] void throw_too_thin(const std::string& what, Real distance)
 {
@@ -31,137 +27,139 @@ Vector2r left_of(const Vector2r& edge) { return Vector2r(-edge.y(), edge.x()).no
 	throw std::invalid_argument(message.str());
 }
 
-using Skeleton = CGAL::Straight_skeleton_2<Kernel>;
-using Builder = CGAL::Straight_skeleton_builder_2<CGAL::Straight_skeleton_builder_traits_2<Kernel>, Skeleton>;
-
-/// The part of the skeleton within `depth` of the outline: the whole of one with a thousand vertices takes 75 times as long.
-boost::shared_ptr<Skeleton> skeleton_up_to(Real depth, const Polygon& polygon)
-{
-	Builder builder{ boost::optional<Real>(depth) };
-	builder.enter_contour(polygon.vertices_begin(), polygon.vertices_end());
-	return builder.construct_skeleton();
-}
-
-/// Corners of the offset polygon. The skeleton is asked for by itself, since CGAL's one-call form dereferences a failed one.
-Points mitred(const Outline& outline, Real distance)
-{
-	Polygon polygon;
-	for (const Vector2r& v : outline.vertices()) polygon.push_back({ v.x(), v.y() });
-	const auto skeleton = skeleton_up_to(2 * distance, polygon);
-	if (!skeleton)
-		throw std::invalid_argument(
-			"outline has no straight skeleton: some of its vertices are almost on one line or almost equal; remove them");
-	const auto pieces = CGAL::create_offset_polygons_2<Polygon>(distance, *skeleton);
-	if (pieces.empty()) throw_too_thin("not one bead fits inside", distance);
-	if (pieces.size() > 1) {
-		const auto& stray = pieces.back()->vertex(0);
-		throw_too_thin("their centres fall into " + std::to_string(pieces.size()) + " separate rings, one at " +
-						   vertex_name(0, Vector2r(stray.x(), stray.y())).substr(9),
-			distance);
-	}
-	Points corners;
-	for (const auto& p : *pieces.front()) corners.emplace_back(p.x(), p.y());
-	return corners;
-}
-
-/// A reflex corner of the outline, the tip of its mitre, and the two feet between which a bead rolls round it.
-struct Reflex {
-	Vector2r corner, mitre, first_foot, second_foot;
+/// A piece of the path before trimming, with the first and the last edge that it touches.
+struct Raw {
+	Stretch stretch;
+	std::size_t first, last;
 };
 
-std::vector<Reflex> reflex_corners(const Outline& outline, Real distance)
+std::vector<Raw> shifted_edges_and_arcs(const EdgeIndex& edges, Real distance)
 {
-	std::vector<Reflex> found;
-	const Points& v = outline.vertices();
-	for (std::size_t i = 0, n = v.size(); i < n; ++i) {
-		const Vector2r in = v[i] - v[(i + n - 1) % n], out = v[(i + 1) % n] - v[i];
-		if (cross(in, out) >= 0) continue;
-		const Vector2r a = left_of(in), b = left_of(out);
-		found.push_back({ v[i], v[i] + distance * (a + b) / (1 + a.dot(b)), v[i] + distance * a, v[i] + distance * b });
+	std::vector<Raw> raw;
+	for (std::size_t i = 0, n = edges.size(); i < n; ++i) {
+		const Vector2r &start = edges.corner(i), &end = edges.corner(i + 1);
+		const Vector2r in = edges.corner(i + n - 1), shift = distance * left_of(end - start);
+		if (cross(start - in, end - start) < 0)
+			raw.push_back({ arc(start + distance * left_of(start - in), start + shift, start), (i + n - 1) % n, i });
+		raw.push_back({ straight(start + shift, end + shift), i, i });
 	}
-	return found;
+	return raw;
 }
 
-bool lies_between(const Vector2r& point, const Vector2r& from, const Vector2r& to)
+/// Cuts away what is closer to edge i than the inset's distance; a circle may be met from either side of its seam.
+void trim(std::vector<Interval>& parts, const Raw& raw, const EdgeIndex& edges, std::size_t i, Real distance)
 {
-	const Real along = (point - from).dot(to - from);
-	return along >= 0 && along <= (to - from).squaredNorm();
+	if (i == raw.first || i == raw.last || parts.empty()) return;
+	const std::size_t n = edges.size();
+	const bool is_neighbour = raw.first == raw.last && (i == (raw.first + 1) % n || raw.first == (i + 1) % n);
+	const Real reach = distance * (is_neighbour ? 1 - round_off : 1 + round_off);
+	const auto hole = closer_than(reach, raw.stretch, edges.corner(i), edges.corner(i + 1));
+	if (!hole) return;
+	const Real circumference = 2 * pi * raw.stretch.radius;
+	for (const int turns : { -1, 0, 1 }) {
+		parts = without(parts, { hole->begin + turns * circumference, hole->end + turns * circumference });
+		if (circumference == 0) break;
+	}
 }
 
-/// The reflex corner whose mitre is `at`, if a bead can roll round it between the inset's neighbouring corners.
-const Reflex* rollable(
-	const std::vector<Reflex>& reflexes, const Vector2r& before, const Vector2r& at, const Vector2r& after, Real tolerance)
+/// Trims by all edges that can reach the part between `begin` and `end`.
+void trim_by_search(std::vector<Interval>& parts, const Interval& part, const Raw& raw, const EdgeIndex& edges, Real distance)
 {
-	for (const Reflex& reflex : reflexes)
-		if ((reflex.mitre - at).norm() <= tolerance && lies_between(reflex.first_foot, before, at) &&
-			lies_between(reflex.second_foot, at, after))
-			return &reflex;
-	return nullptr;
+	const Stretch piece = raw.stretch.part(part.begin, part.end);
+	const Vector2r middle = piece.at(piece.length / 2);
+	const Real reach = distance * (1 + round_off), far = reach + piece.length / 2;
+	for (const std::size_t i : edges.near(grown(piece.box(), reach)))
+		if (distance_to_segment(middle, edges.corner(i), edges.corner(i + 1)) < far) trim(parts, raw, edges, i, distance);
 }
 
-/// An arc leaves the mitred inset, so another part of the outline may be in its way.
-bool is_free(const Stretch& bend, const Outline& outline)
+/// The next few edges on either side often leave little or nothing for the search.
+std::vector<Stretch> trimmed(const Raw& raw, const EdgeIndex& edges, Real distance)
 {
-	constexpr int samples = 32;
-	for (int i = 0; i <= samples; ++i)
-		if (distance_to(outline, bend.at(bend.length * i / samples)) < bend.radius * (1 - 1e-9)) return false;
-	return true;
+	const std::size_t n = edges.size();
+	std::vector<Interval> parts{ { 0, raw.stretch.length } };
+	for (const std::size_t beside : { 1, 2, 3 }) {
+		trim(parts, raw, edges, (raw.last + beside) % n, distance);
+		trim(parts, raw, edges, (raw.first + 3 * n - beside) % n, distance);
+	}
+	const std::vector<Interval> left = parts;
+	for (const Interval& part : left) trim_by_search(parts, part, raw, edges, distance);
+	std::sort(parts.begin(), parts.end(), [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+	std::vector<Stretch> pieces;
+	for (const Interval& part : parts) pieces.push_back(raw.stretch.part(part.begin, part.end));
+	return pieces;
+}
+
+std::vector<Stretch> touching(const EdgeIndex& edges, Real distance)
+{
+	std::vector<Stretch> pieces;
+	for (const Raw& raw : shifted_edges_and_arcs(edges, distance))
+		for (const Stretch& piece : trimmed(raw, edges, distance)) pieces.push_back(piece);
+	return pieces;
+}
+
+using Ring = std::vector<Stretch>;
+
+/// Joins pieces into rings. Along one ring they follow one another as along the outline; a second ring lies between two pieces
+/// of the first like one pair of brackets in another, so an open end waits until the piece comes that goes on from it.
+std::vector<Ring> rings_of(const std::vector<Stretch>& pieces, Real tolerance)
+{
+	const auto meet = [&](const Vector2r& a, const Vector2r& b) { return (a - b).norm() <= tolerance; };
+	std::vector<Ring> open, closed;
+	for (const Stretch& piece : pieces) {
+		if (!open.empty() && meet(open.back().back().to, piece.from))
+			open.back().push_back(piece);
+		else
+			open.push_back({ piece });
+		while (open.size() > 1 && meet(open.back().back().to, open.back().front().from)) {
+			closed.push_back(open.back());
+			open.pop_back();
+		}
+	}
+	closed.insert(closed.end(), open.begin(), open.end());
+	return closed;
+}
+
+Real length_of(const Ring& ring)
+{
+	Real length = 0;
+	for (const Stretch& stretch : ring) length += stretch.length;
+	return length;
+}
+
+bool is_closed(const Ring& ring, Real tolerance) { return (ring.back().to - ring.front().from).norm() <= tolerance; }
+
+/// The one ring of the pieces; empty if some ring stays open.
+Ring only_ring(const std::vector<Stretch>& pieces, const Vector2r& origin, Real distance)
+{
+	std::vector<Ring> rings = rings_of(pieces, joint * distance);
+	const auto is_speck = [&](const Ring& ring) { return length_of(ring) <= joint * distance; };
+	rings.erase(std::remove_if(rings.begin(), rings.end(), is_speck), rings.end());
+	if (rings.empty()) throw_too_thin("not one bead fits inside", distance);
+	for (const Ring& ring : rings)
+		if (!is_closed(ring, joint * distance)) return {};
+	if (rings.size() > 1)
+		throw_too_thin("their centres fall into " + std::to_string(rings.size()) + " separate rings, one at " +
+						   vertex_name(0, origin + rings.back().front().from).substr(9),
+			distance);
+	return rings.front();
 }
 
 }  // namespace
 
-Stretch straight(const Vector2r& from, const Vector2r& to) { return { from, to, Vector2r::Zero(), 0, (to - from).norm() }; }
-
-Stretch arc(const Vector2r& from, const Vector2r& to, const Vector2r& centre)
-{
-	const Vector2r a = from - centre, b = to - centre;
-	return { from, to, centre, a.norm(), a.norm() * std::atan2(std::abs(cross(a, b)), a.dot(b)) };
-}
-
-Vector2r Stretch::at(Real distance) const
-{
-	if (radius == 0) return from + (to - from) * (distance / length);
-	return centre + Eigen::Rotation2D<Real>(-distance / radius) * (from - centre);
-}
-
-Vector2r Stretch::heading(Real distance) const
-{
-	return radius == 0 ? Vector2r((to - from) / length) : Vector2r(-left_of(at(distance) - centre));
-}
-
-Real distance_to(const Outline& outline, const Vector2r& point)
-{
-	if (outline.is_disk()) return std::abs(outline.disk_radius() - (point - outline.disk_centre()).norm());
-	const Points& v = outline.vertices();
-	Real nearest = std::numeric_limits<Real>::infinity();
-	for (std::size_t i = 0; i < v.size(); ++i) {
-		const Vector2r edge = v[(i + 1) % v.size()] - v[i], to = point - v[i];
-		const Real along = std::clamp(to.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-		nearest = std::min(nearest, (to - along * edge).norm());
-	}
-	return nearest;
-}
-
 std::vector<Stretch> inset(const Outline& outline, Real distance)
 {
-	const Points corners = mitred(outline, distance);
-	const auto reflexes = reflex_corners(outline, distance);
-	const std::size_t n = corners.size();
-	const Real tolerance = 1e-9 * outline.extent();
-	std::vector<Stretch> bends(n);  // length 0 where the corner stays a corner
-	for (std::size_t i = 0; i < n; ++i) {
-		const Reflex* reflex = rollable(reflexes, corners[(i + n - 1) % n], corners[i], corners[(i + 1) % n], tolerance);
-		const Stretch bend =
-			reflex ? arc(reflex->first_foot, reflex->second_foot, reflex->corner) : straight(corners[i], corners[i]);
-		bends[i] = is_free(bend, outline) ? bend : straight(corners[i], corners[i]);
+	const EdgeIndex edges(straightened(outline.corners(), straight_within * distance));
+	for (const int nudges : { 0, 1, 2 }) {
+		const Real from_outline = distance * (1 + nudges * nudge);
+		Ring ring = only_ring(touching(edges, from_outline), outline.origin(), from_outline);
+		const auto is_speck = [&](const Stretch& stretch) { return stretch.length <= straight_within * distance; };
+		ring.erase(std::remove_if(ring.begin(), ring.end(), is_speck), ring.end());
+		if (!ring.empty()) return ring;
 	}
-	std::vector<Stretch> path;
-	for (std::size_t i = 0; i < n; ++i) {
-		if (bends[i].length > 0) path.push_back(bends[i]);
-		const Stretch edge = straight(bends[i].to, bends[(i + 1) % n].from);
-		if (edge.length > tolerance) path.push_back(edge);
-	}
-	return path;
+	std::ostringstream message;
+	message << "outline must let beads of diameter " << 2 * distance
+			<< " roll along its inside, but no inset was found; change the bead diameter a little";
+	throw std::invalid_argument(message.str());
 }
 
 }  // namespace graindrive::shapes

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -16,28 +17,36 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr std::size_t most_vertices = 5000;  // of twice as many an inset takes a minute
-constexpr Real round_off = 1e-12;            // of the extent: below it, vertices are one point and edges one line [-]
+constexpr std::size_t most_given = 200000;   // before those on straight lines are left out
+constexpr Real one_point = 1e-9;             // of the extent: vertices that are closer are one point [-]
+constexpr Real round_off = 1e-12;            // of the extent: below it, edges are one line [-]
+constexpr Real coarsest = 1e-8;              // of the extent: what a vertex's coordinates must resolve [-]
 
-/// A vertex with its index in what the caller gave, so that a message after repairs still points at the right line.
+/// A vertex as seen from the origin, as given, and its index there: a message after repairs still points at the right line.
 struct Corner {
-	Vector2r at;
+	Vector2r at, given;
 	std::size_t index;
 };
 using Corners = std::vector<Corner>;
 
-std::string name(const Corner& corner) { return vertex_name(corner.index, corner.at); }
+std::string name(const Corner& corner) { return vertex_name(corner.index, corner.given); }
 
-Real cross(const Vector2r& a, const Vector2r& b) { return a.x() * b.y() - a.y() * b.x(); }
+void require_usual(const Vector2r& vertex, std::size_t index)
+{
+	for (const Real coordinate : { vertex.x(), vertex.y() }) {
+		if (!std::isfinite(coordinate))
+			throw std::invalid_argument(
+				"outline vertices must be finite numbers, got " + vertex_name(index, vertex) + "; correct or remove it");
+		if (std::abs(coordinate) > largest_length)
+			throw std::invalid_argument(
+				"outline vertices must be numbers up to 1e50, got " + vertex_name(index, vertex) + "; take a larger unit");
+	}
+}
 
-Corners numbered(const Points& vertices)
+Corners numbered(const Points& vertices, const Vector2r& origin)
 {
 	Corners corners;
-	for (std::size_t i = 0; i < vertices.size(); ++i) {
-		corners.push_back({ vertices[i], i });
-		if (!vertices[i].allFinite())
-			throw std::invalid_argument(
-				"outline vertices must be finite numbers, got " + name(corners.back()) + "; correct or remove it");
-	}
+	for (std::size_t i = 0; i < vertices.size(); ++i) corners.push_back({ vertices[i] - origin, vertices[i], i });
 	return corners;
 }
 
@@ -101,12 +110,15 @@ bool turns_back(const Corner& a, const Corner& b, const Corner& c)
 	const std::size_t n = corners.size();
 	const auto edge = [&](std::size_t i) { return Kernel::Segment_2(cgal(corners[i]), cgal(corners[(i + 1) % n])); };
 	const std::string way_out = "; list the vertices in order round the shape, each edge touching only its neighbours";
+	std::vector<CGAL::Bbox_2> boxes;
+	for (std::size_t i = 0; i < n; ++i) boxes.push_back(edge(i).bbox());
 	for (std::size_t i = 0; i < n; ++i) {
 		if (turns_back(corners[i], corners[(i + 1) % n], corners[(i + 2) % n]))
 			throw std::invalid_argument(
 				"outline must not cross or touch itself, but turns back at " + name(corners[(i + 1) % n]) + way_out);
 		for (std::size_t j = i + 2; j < n; ++j) {
-			if ((j + 1) % n == i || !CGAL::do_intersect(edge(i), edge(j))) continue;
+			if ((j + 1) % n == i || !CGAL::do_overlap(boxes[i], boxes[j])) continue;
+			if (!CGAL::do_intersect(edge(i), edge(j))) continue;
 			throw std::invalid_argument("outline must not cross or touch itself, but the edge from " + name(corners[i]) +
 										" meets the edge from " + name(corners[j]) + way_out);
 		}
@@ -138,21 +150,64 @@ Real twice_area(const Corners& corners)
 	return sum;
 }
 
+/// Coordinates far out keep few digits of the shape; a shape that is not the one that was meant must not be taken for it.
+void require_resolved(const Corners& corners, Real extent)
+{
+	if (corners.empty() || extent == 0) return;
+	Real farthest = 0;
+	for (const Corner& corner : corners) farthest = std::max(farthest, corner.given.cwiseAbs().maxCoeff());
+	std::ostringstream message;
+	if (extent < smallest_length) {
+		message << "outline must be at least 1e-50 wide or high, got " << extent << "; take a smaller unit";
+		throw std::invalid_argument(message.str());
+	}
+	if (farthest * std::numeric_limits<Real>::epsilon() <= coarsest * extent) return;
+	message << "outline must lie so near the origin that its coordinates resolve 1e-8 of its extent " << extent << ", got "
+			<< name(corners.front()) << "; shift it towards (0, 0)";
+	throw std::invalid_argument(message.str());
+}
+
+/// Zero if the numbers reach as far as they are wide. Otherwise all are within a factor of two of their middle, so that
+/// subtracting it loses nothing (Sterbenz).
+Real middle_of(Real least, Real most)
+{
+	const Real middle = least / 2 + most / 2;
+	return std::abs(middle) > most - least ? middle : 0;
+}
+
+void require_few(std::size_t count, std::size_t most, const std::string& which)
+{
+	if (count <= most) return;
+	throw std::invalid_argument("outline must have at most " + std::to_string(most) + " vertices" + which + ", got " +
+								std::to_string(count) + "; leave out what is finer than a bead can show");
+}
+
 }  // namespace
 
-Points checked_polygon(const Points& vertices)
+Vector2r origin_near(const Points& vertices)
 {
-	Corners corners = numbered(vertices);
-	const Real tolerance = round_off * extent_of(corners);
-	corners = without_repeats(corners, tolerance);
+	Eigen::AlignedBox<Real, 2> box;
+	for (std::size_t i = 0; i < vertices.size(); ++i) {
+		require_usual(vertices[i], i);
+		box.extend(vertices[i]);
+	}
+	if (vertices.empty()) return Vector2r::Zero();
+	return { middle_of(box.min().x(), box.max().x()), middle_of(box.min().y(), box.max().y()) };
+}
+
+Points checked_polygon(const Points& vertices, const Vector2r& origin)
+{
+	require_few(vertices.size(), most_given, " in all");
+	Corners corners = numbered(vertices, origin);
+	const Real extent = extent_of(corners);
+	require_resolved(corners, extent);
+	corners = without_repeats(corners, one_point * extent);
 	require_three(corners);
-	if (breadth(corners) <= tolerance)
+	if (breadth(corners) <= one_point * extent)
 		throw std::invalid_argument("outline must enclose an area, but all its vertices lie on one line through " +
 									name(corners.front()) + "; move one off the line");
-	corners = without_collinear(corners, tolerance);
-	if (corners.size() > most_vertices)
-		throw std::invalid_argument("outline must have at most " + std::to_string(most_vertices) + " vertices, got " +
-									std::to_string(corners.size()) + "; leave out what is finer than a bead can show");
+	corners = without_collinear(corners, round_off * extent);
+	require_few(corners.size(), most_vertices, "");
 	require_simple(corners);
 	if (twice_area(corners) < 0) std::reverse(corners.begin(), corners.end());
 	Points polygon;

@@ -4,8 +4,12 @@
 
 namespace graindrive::shapes {
 
-/// Vertices counter-clockwise, without repeated, closing and collinear ones.
+/// A point from which the vertices are seen without loss of digits: a coordinate of it is 0 unless all vertices lie far out.
+/// @throws std::invalid_argument for vertices that are not finite or too large
+Vector2r origin_near(const Points& vertices);
+
+/// Vertices relative to `origin`, counter-clockwise, without repeated, closing and collinear ones.
 /// @throws std::invalid_argument as the constructor of `Outline`, naming vertices by their index in `vertices`
-Points checked_polygon(const Points& vertices);
+Points checked_polygon(const Points& vertices, const Vector2r& origin);
 
 }  // namespace graindrive::shapes

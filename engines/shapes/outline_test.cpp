@@ -71,6 +71,55 @@ TEST(Outline, refuses_edges_that_touch_and_edges_that_turn_back)
 		<< "spike without width";
 }
 
+TEST(Outline, refuses_numbers_that_its_integrals_cannot_hold)
+{
+	EXPECT_TRUE(mentions(refusal({ { 0, 0 }, { 1e154, 0 }, { 0, 1e154 } }), "up to 1e50, got vertex 1 (1e+154, 0)"));
+	EXPECT_TRUE(mentions(refusal({ { 0, 0 }, { 1e-300, 0 }, { 0, 1e-300 } }), "at least 1e-50 wide or high, got 1e-300"));
+	EXPECT_TRUE(mentions(refusal({ { 0, 0 }, { 5e-324, 0 }, { 0, 5e-324 } }), "at least 1e-50"));
+	for (const Real size : { 1e49, 1e-49 }) {
+		const Solid solid = solid_of(Outline({ { 0, 0 }, { size, 0 }, { size, size }, { 0, size } }));
+		EXPECT_DOUBLE_EQ(solid.area, size * size);
+		EXPECT_DOUBLE_EQ(solid.second_moment, size * size / 6);
+	}
+}
+
+TEST(Outline, refuses_a_place_so_far_out_that_the_shape_is_rounded_away)
+{
+	Points far;
+	for (const Vector2r& v : square) far.push_back(v + Vector2r(1e9, 0));
+	EXPECT_TRUE(mentions(refusal(far), "resolve 1e-8 of its extent 2, got vertex 0 (1000000000, 0)")) << refusal(far);
+}
+
+TEST(Outline, gives_back_the_vertices_that_it_was_given_to_the_last_bit)
+{
+	for (const Vector2r& at : { Vector2r(0.1, -0.7), Vector2r(5e6, -3.3e6), Vector2r(0.3, 7e6) }) {
+		Points given;
+		for (const Vector2r& v : square) given.push_back(v * 1.37 + at);
+		EXPECT_EQ(Outline(given).vertices(), given);
+	}
+}
+
+TEST(Outline, is_turned_far_out_as_exactly_as_about_the_origin)
+{
+	Points far;
+	for (const Vector2r& v : square) far.push_back(v + Vector2r(1 << 22, -3 << 20));  // sums without round-off
+	const Points near = Outline(square).turned(0.7).corners(), there = Outline(far).turned(0.7).about_centroid().corners();
+	for (std::size_t i = 0; i < near.size(); ++i)
+		EXPECT_LT((near[i] - near[0] - (there[i] - there[0])).norm(), 1e-15) << i;  // a few round-offs of lengths of 2
+}
+
+TEST(FallHeight, does_not_feel_mid_points_and_rounded_digits)
+{
+	// Sides that stand upright but for the sixth digit, with mid points that stick out by as much.
+	const Outline littered(
+		{ { -3, -3 }, { 0, -3.000001 }, { 3, -3 }, { 3.000001, 0 }, { 3, 3 }, { 0, 3 }, { -3, 3 }, { -3.000001, 1 } });
+	EXPECT_NEAR(fall_height(littered), 6, 2e-6);
+	// A circle in edges so short that all of them are upright within 1e-6 of its extent squared.
+	Points fine;
+	for (int i = 0; i < 5000; ++i) fine.emplace_back(std::cos(2 * pi * i / 5000), std::sin(2 * pi * i / 5000));
+	EXPECT_NEAR(fall_height(Outline(fine)), 1, 2 * pi / 5000);
+}
+
 TEST(BuiltIn, has_the_papers_sizes_about_the_centroid)
 {
 	const Real areas[] = { pi * 49 / 4, 6.5 * 6.5, 4.5 * 9.5, 9.5 * 4.5, std::sqrt(3.0) / 4 * 9.5 * 9.5 };
@@ -101,4 +150,7 @@ TEST(BuiltIn, lists_the_choices_for_an_unknown_name_and_the_sizes_it_takes)
 	EXPECT_TRUE(mentions(complaint([] { outline_of("wide", { 3 }); }), "takes 2 size(s) (width, height), got 1"));
 	EXPECT_TRUE(mentions(complaint([] { outline_of("disk", { -7 }); }), "positive and finite, got -7"));
 	EXPECT_TRUE(mentions(complaint([] { outline_of("disk", {}, std::nan("")); }), "finite angle"));
+	EXPECT_TRUE(mentions(complaint([] { outline_of("disk", { 1e308 }); }), "from 1e-50 to 1e+50"));
+	EXPECT_TRUE(mentions(complaint([] { outline_of("triangle", { 1e308 }); }), "up to 1e50"));
+	EXPECT_TRUE(mentions(complaint([] { outline_of("square", { 5e-324 }); }), "1e-50"));
 }

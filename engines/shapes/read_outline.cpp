@@ -1,139 +1,149 @@
-/// WKT by Boost.Geometry, CSV by hand: locale plays no part in either.
+/// Files are read whole and as text; what is not a text of vertices is refused by what it is.
 #include "engines/shapes/read_outline.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
 #include <cctype>
-#include <charconv>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <optional>
-#include <sstream>
 #include <stdexcept>
+
+#include "engines/shapes/wkt.hpp"
+#include "engines/shapes/words.hpp"
 
 namespace graindrive::shapes {
 
 namespace {
 
-std::string without_comments(const std::string& text)
+constexpr std::uintmax_t largest_file = 4 << 20;  // 5,000 vertices take 200 kB [bytes]
+
+void require_text(const std::string& text)
 {
-	std::istringstream lines(text.rfind("\xEF\xBB\xBF", 0) == 0 ? text.substr(3) : text);  // less a byte-order mark
-	std::string kept;
-	for (std::string line; std::getline(lines, line);) kept += line.substr(0, line.find('#')) + '\n';
-	return kept;
+	const std::string mark = text.substr(0, 2);
+	const bool has_zeros = text.find('\0') != std::string::npos;
+	if (mark == "\xFF\xFE" || mark == "\xFE\xFF" || (has_zeros && text.size() > 1 && (text[0] == '\0') != (text[1] == '\0')))
+		throw std::invalid_argument("an outline must be plain or UTF-8 text, got UTF-16; save it as UTF-8");
+	if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && !std::isspace(c); }))
+		throw std::invalid_argument("an outline must be plain or UTF-8 text, got binary data; save its vertices as CSV or WKT");
 }
 
-/// "POLYGON" of "polygon ((0 0, ...": the leading letters in capitals.
-std::string leading_word(const std::string& text)
+/// The lines of a text, without byte-order mark and comments, whatever system ended them.
+std::vector<std::string> lines_of(const std::string& text)
 {
-	std::string word;
-	const auto start = std::find_if(text.begin(), text.end(), [](unsigned char c) { return !std::isspace(c); });
-	for (auto c = start; c != text.end() && std::isalpha(static_cast<unsigned char>(*c)); ++c)
-		word += std::toupper(static_cast<unsigned char>(*c));
-	return word;
+	std::string unix_text = text.rfind("\xEF\xBB\xBF", 0) == 0 ? text.substr(3) : text;
+	for (std::size_t at = 0; (at = unix_text.find("\r\n", at)) != std::string::npos;) unix_text.erase(at, 1);
+	std::replace(unix_text.begin(), unix_text.end(), '\r', '\n');
+	std::vector<std::string> lines = split(unix_text, '\n');
+	for (std::string& line : lines) line = stripped(line.substr(0, line.find('#')));
+	return lines;
 }
 
-bool is_wkt(const std::string& word)
+std::string joined(const std::vector<std::string>& lines)
 {
-	for (const char* tag : { "POINT", "LINESTRING", "LINEARRING", "POLYGON", "TRIANGLE", "MULTIPOINT", "MULTILINESTRING",
-			 "MULTIPOLYGON", "GEOMETRYCOLLECTION" })
-		if (word == tag) return true;
-	return false;
-}
-
-/// Boost's reader takes blanks for white space, but not line ends, nor the semicolon with which databases end a statement.
-std::string one_line(std::string text)
-{
-	for (char& c : text)
-		if (std::isspace(static_cast<unsigned char>(c))) c = ' ';
-	text.erase(text.find_last_not_of(" ;") + 1);
+	std::string text;
+	for (const std::string& line : lines) text += line + '\n';
 	return text;
 }
 
-Points from_wkt(const std::string& text, const std::string& word)
+/// What stands between double quotes, as tables hold a geometry.
+std::vector<std::string> quoted_geometries(const std::string& text)
 {
-	namespace bg = boost::geometry;
-	if (word != "POLYGON")
-		throw std::invalid_argument(
-			"an outline must be one WKT POLYGON, got a " + word + "; save the outer ring alone as POLYGON ((x y, ...))");
-	bg::model::polygon<bg::model::d2::point_xy<Real>> polygon;
-	try {
-		bg::read_wkt(one_line(text), polygon);
-	} catch (const bg::read_wkt_exception& error) {
-		throw std::invalid_argument(
-			std::string("cannot read the WKT (") + error.what() + "); an outline is one POLYGON ((x y, x y, ...))");
+	std::vector<std::string> found;
+	const auto parts = split(text, '"');
+	for (std::size_t i = 1; i + 1 < parts.size(); i += 2)
+		if (is_wkt(parts[i])) found.push_back(parts[i]);
+	return found;
+}
+
+std::vector<std::string> fields_of(const std::string& line)
+{
+	std::string plain = line;
+	plain.erase(std::remove(plain.begin(), plain.end(), '"'), plain.end());
+	for (const char separator : { ';', ',', '\t' }) {
+		if (plain.find(separator) == std::string::npos) continue;
+		auto fields = split(plain, separator);
+		if (fields.size() > 1 && fields.back().empty()) fields.pop_back();
+		return fields;
 	}
-	if (!polygon.inners().empty())
-		throw std::invalid_argument(
-			"an outline must not have holes, got " + std::to_string(polygon.inners().size()) + "; keep the outer ring alone");
-	Points vertices;
-	for (const auto& p : polygon.outer()) vertices.emplace_back(p.x(), p.y());
-	return vertices;
+	return words_of(plain);
 }
 
-std::vector<std::string> fields_of(std::string line)
+/// Names of columns: no field opens as a number would.
+bool is_header(const std::vector<std::string>& fields)
 {
-	const bool has_empty = line.find(",,") != std::string::npos || line.find(";;") != std::string::npos;
-	std::replace_if(
-		line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-	std::istringstream words(line);
-	std::vector<std::string> fields{ std::istream_iterator<std::string>(words), {} };
-	if (has_empty) fields.emplace_back();
-	return fields;
+	return std::none_of(fields.begin(), fields.end(), [](const std::string& field) {
+		return field.empty() || std::isdigit(static_cast<unsigned char>(field[0])) || field.find_first_of("+-.,{}[(<") == 0 ||
+		       number(field);
+	});
 }
 
-std::optional<Real> number(const std::string& field)
+Vector2r vertex_in(const std::string& line, const std::vector<std::string>& fields, std::size_t line_number)
 {
-	const char* start = field.data() + (field.size() > 1 && field[0] == '+');
-	const char* end = field.data() + field.size();
-	Real value;
-	const auto [stop, failure] = std::from_chars(start, end, value);
-	if (failure != std::errc() || stop != end) return std::nullopt;
-	return value;
+	if (fields.size() == 2) {
+		const auto x = number(fields[0]), y = number(fields[1]);
+		if (x && y) return { *x, *y };
+	}
+	throw std::invalid_argument("line " + std::to_string(line_number) + " must hold two numbers x, y, got " + shown(line) +
+								"; comments start with #, decimals take a point");
 }
 
-Points from_csv(const std::string& text)
+Points vertices_in_table(const std::vector<std::string>& lines)
 {
 	Points vertices;
 	bool header_possible = true;
-	std::istringstream lines(text);
-	int line_number = 0;
-	for (std::string line; std::getline(lines, line);) {
-		++line_number;
-		const auto fields = fields_of(line);
-		if (fields.empty()) continue;
-		const auto x = number(fields[0]), y = fields.size() > 1 ? number(fields[1]) : std::nullopt;
-		const bool is_header = header_possible && !x && !y;
+	for (std::size_t i = 0; i < lines.size(); ++i) {
+		if (lines[i].empty()) continue;
+		const auto fields = fields_of(lines[i]);
+		const bool header = header_possible && is_header(fields);
 		header_possible = false;
-		if (is_header) continue;
-		if (!x || !y || fields.size() != 2)
-			throw std::invalid_argument("line " + std::to_string(line_number) + " must hold two numbers x, y, got '" +
-										line.substr(0, line.find_last_not_of(" \t\r") + 1) +
-										"'; comments start with #, decimals take a point");
-		vertices.emplace_back(*x, *y);
+		if (!header) vertices.push_back(vertex_in(lines[i], fields, i + 1));
 	}
 	return vertices;
+}
+
+/// The text of a file, read only if it can end: a pipe or a device may not.
+std::string contents_of(const std::string& path)
+{
+	namespace fs = std::filesystem;
+	const auto refuse = [&](const std::string& why) {
+		throw std::invalid_argument("cannot read an outline from " + shown(path) + ": " + why);
+	};
+	if (path.find('\0') != std::string::npos) refuse("a path must not hold the byte 0");
+	std::error_code error;
+	const fs::file_status status = fs::status(path, error);
+	if (!fs::status_known(status) || !fs::exists(status)) refuse(error.message() + "; name a file with vertices in WKT or CSV");
+	if (!fs::is_regular_file(status))
+		refuse(std::string("it must be a readable file with vertices in WKT or CSV, got ") +
+			   (fs::is_directory(status) ? "a folder" : "a pipe or a device"));
+	std::ifstream file(path, std::ios::binary);
+	std::string text(largest_file + 1, '\0');
+	if (!file || (file.read(text.data(), static_cast<std::streamsize>(text.size())), file.bad()))
+		refuse("it must be a readable file with vertices in WKT or CSV; look at its permissions");
+	text.resize(static_cast<std::size_t>(file.gcount()));
+	if (text.size() > largest_file)
+		refuse("it must not be larger than 4 MiB; leave out vertices that are finer than a bead can show");
+	return text;
 }
 
 }  // namespace
 
 Points vertices_in(const std::string& text)
 {
-	const std::string plain = without_comments(text), word = leading_word(plain);
-	return is_wkt(word) ? from_wkt(plain, word) : from_csv(plain);
+	require_text(text);
+	const auto lines = lines_of(text);
+	const std::string plain = joined(lines);
+	if (is_wkt(plain)) return vertices_in_wkt(plain);
+	const auto geometries = quoted_geometries(plain);
+	if (geometries.size() > 1)
+		throw std::invalid_argument("a table of geometries must hold one outline, got " + std::to_string(geometries.size()) +
+									"; keep the row that is meant");
+	return geometries.empty() ? vertices_in_table(lines) : vertices_in_wkt(geometries[0]);
 }
 
 Outline read_outline(const std::string& path)
 {
-	std::ifstream file(path);
-	std::ostringstream text;
-	if (!(file && text << file.rdbuf()))
-		throw std::invalid_argument(
-			"cannot read an outline from '" + path + "': it must be a readable file with vertices in WKT or CSV");
+	const std::string text = contents_of(path);
 	try {
-		return Outline(vertices_in(text.str()));
+		return Outline(vertices_in(text));
 	} catch (const std::invalid_argument& error) {
 		throw std::invalid_argument(path + ": " + error.what());
 	}

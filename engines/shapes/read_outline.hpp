@@ -8,8 +8,9 @@ namespace graindrive::shapes {
 
 /// Reads an outline; the content says which format it is, not the name.
 ///
-/// WKT: one `POLYGON ((x y, x y, ...))`, without holes. CSV: x and y of one vertex a line, separated by comma, semicolon or
-/// blanks; text after `#` is a comment; the first line may be a header.
+/// WKT: one `POLYGON ((x y, x y, ...))`, without holes, alone or as the one quoted geometry of a table (see wkt.hpp). CSV: x and
+/// y of one vertex a line, separated by semicolon, comma, tab or blanks; text after `#` is a comment; the first line may be a
+/// header. The text is UTF-8, of at most 4 MiB.
 /// @throws std::invalid_argument naming the file, and the line or vertex, for anything else
 Outline read_outline(const std::string& path);
 

@@ -76,8 +76,10 @@ void bind_outline()
 		"Outer edge of an intruder: a checked simple polygon, or an exact circle (from outline_of('disk')).\n\n"
 		"Outline(vertices): array-like of shape (n, 2) [length], in either sense. Clockwise is turned round; repeated, closing "
 		"and\n"
-		"collinear vertices are dropped. Raises ValueError, naming the vertex, for non-finite vertices, fewer than 3 different\n"
-		"ones, no area, or edges that cross or touch.",
+		"collinear vertices are dropped. Raises ValueError, naming the vertex, for vertices that are not finite or beyond 1e50, "
+		"for\n"
+		"a shape so far out that its coordinates do not resolve 1e-8 of its extent, for fewer than 3 different vertices or more\n"
+		"than 5,000, for no area, and for edges that cross or touch.",
 		py::no_init)
 		.def("__init__", py::make_constructor(&make_outline, py::default_call_policies(), (py::arg("vertices"))))
 		.add_property("vertices", &vertices, "corners, counter-clockwise, shape (n, 2) [length]; a disk is drawn with 360")
@@ -87,10 +89,11 @@ void bind_outline()
 		.add_property("fall_height", &fall_height,
 			"l of the wiggle paper's cavity model (its Table 1): from the lowest point with a vertical tangent to the top "
 			"[length]")
+		.add_property("about_centroid", &Outline::about_centroid,
+			"the outline with its solid's centroid at (0, 0), with all its digits even if it lies far out")
 		.add_property("extent", &Outline::extent, "larger side of the box around the outline [length]")
 		.add_property("disk_radius", &Outline::disk_radius, "radius of an exact circle [length]; 0 for a polygon")
-		.def("turned", &Outline::turned, (py::arg("angle")),
-			"The outline turned counter-clockwise about the origin by angle [rad].");
+		.def("turned", &Outline::turned, (py::arg("angle")), "The outline turned counter-clockwise about (0, 0) by angle [rad].");
 }
 
 void bind_clump()
@@ -106,8 +109,10 @@ void bind_clump()
 		"radius.\n\n"
 		"bead_diameter [length], mass [mass] of the whole clump, spacing: longest step between beads in bead diameters, in (0, "
 		"1].\n"
-		"Beads stand at every corner of the inset (CGAL straight skeleton, arcs at reflex corners) and at equal steps between.\n"
-		"Raises ValueError for a value out of range and for a shape too thin for the beads.");
+		"Beads stand at every corner of the inset (arcs at reflex corners) and at equal steps between, within 1e-5 of their "
+		"radius\n"
+		"of touching; beads and inertia are as exact for an outline far from (0, 0) as for one about it.\n"
+		"Raises ValueError for a value out of range, for a shape too thin for the beads, and for more than 1e5 beads.");
 }
 
 }  // namespace
@@ -124,7 +129,8 @@ void bind_shapes()
 		"Raises ValueError for an unknown name, a wrong number of sizes or one that is not positive.");
 	py::def("shape_names", &names, "Names that outline_of knows, without the aliases OS1 to OS5.");
 	py::def("read_outline", &read_outline, (py::arg("path")),
-		"Outline from a file: one WKT POLYGON without holes, or a CSV of vertices (x, y a line, # comments, optional header).\n\n"
+		"Outline from a regular file of at most 4 MiB: one WKT POLYGON without holes, alone or quoted in a table, or a CSV of\n"
+		"vertices (x, y a line, # comments, optional header).\n\n"
 		"Raises ValueError naming the file and the line or vertex.");
 }
 

@@ -1,52 +1,81 @@
-/// Polygon integrals as sums over the triangles between the first vertex and each edge (Green's theorem).
+/// Polygon integrals as sums over the triangles between one point and each edge (Green's theorem).
 #include "engines/shapes/solid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "engines/shapes/straighten.hpp"
 
 namespace graindrive::shapes {
 
 namespace {
 
+constexpr Real rounding = 1e-6;  // of the extent: what rounded digits of a file may move a vertex by [-]
+
 Solid disk_solid(const Outline& outline)
 {
 	const Real r = outline.disk_radius();
-	return { pi * r * r, outline.disk_centre(), r * r / 2 };
+	return { pi * r * r, outline.origin(), r * r / 2, Vector2r::Zero() };
 }
 
-bool is_vertical_at(const Vector2r& before, const Vector2r& here, const Vector2r& after, Real tolerance)
+struct Sums {
+	Real area = 0;
+	Vector2r first = Vector2r::Zero();
+	Real polar = 0;
+};
+
+/// Integrals of 1, r and r^2 over the polygon, r seen from `point`.
+Sums integrals(const Points& corners, const Vector2r& point)
 {
-	return (before.x() - here.x()) * (after.x() - here.x()) >= -tolerance;
+	Sums sums;
+	for (std::size_t i = 0; i < corners.size(); ++i) {
+		const Vector2r a = corners[i] - point, b = corners[(i + 1) % corners.size()] - point;
+		const Real triangle = cross(a, b) / 2;
+		sums.area += triangle;
+		sums.first += triangle * (a + b) / 3;
+		sums.polar += triangle * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) / 6;
+	}
+	return sums;
+}
+
+bool is_vertical(const Vector2r& edge, Real extent)
+{
+	return std::abs(edge.x()) <= std::min(2 * rounding * extent, std::abs(edge.y()) / 2);
+}
+
+/// True at a corner where the outline turns back along x, and at both ends of a vertical edge.
+bool is_vertical_at(const Vector2r& before, const Vector2r& here, const Vector2r& after, Real extent)
+{
+	return is_vertical(before - here, extent) || is_vertical(after - here, extent) ||
+	       (before.x() > here.x()) == (after.x() > here.x());
 }
 
 }  // namespace
 
+/// The second pass, about the centroid, adds what is alike in size: about a corner it would be a difference of larger numbers.
 Solid solid_of(const Outline& outline)
 {
 	if (outline.is_disk()) return disk_solid(outline);
-	const Points& v = outline.vertices();
-	Real area = 0, polar = 0;
-	Vector2r first = Vector2r::Zero();
-	for (std::size_t i = 1; i + 1 < v.size(); ++i) {
-		const Vector2r a = v[i] - v[0], b = v[i + 1] - v[0];  // triangle (0, a, b), about the first vertex
-		const Real triangle = (a.x() * b.y() - a.y() * b.x()) / 2;
-		area += triangle;
-		first += triangle * (a + b) / 3;
-		polar += triangle * (a.squaredNorm() + a.dot(b) + b.squaredNorm()) / 6;
-	}
-	const Vector2r centre = first / area;
-	return { area, v[0] + centre, polar / area - centre.squaredNorm() };
+	const Points& corners = outline.corners();
+	const Sums about_corner = integrals(corners, corners[0]);
+	const Vector2r centre = corners[0] + about_corner.first / about_corner.area;
+	const Sums about_centre = integrals(corners, centre);
+	const Vector2r rest = about_centre.first / about_centre.area;
+	const Vector2r from_origin = centre + rest;
+	return { about_centre.area, outline.origin() + from_origin, about_centre.polar / about_centre.area - rest.squaredNorm(),
+		from_origin };
 }
 
 Real fall_height(const Outline& outline)
 {
 	if (outline.is_disk()) return outline.disk_radius();
-	const Points& v = outline.vertices();
-	const Real tolerance = 1e-12 * outline.extent() * outline.extent();  // edges vertical up to the round-off of a turn
+	const Real extent = outline.extent();
+	const Points v = straightened(outline.corners(), rounding * extent);
 	Real top = v[0].y(), lowest = std::numeric_limits<Real>::infinity();
 	for (std::size_t i = 0, n = v.size(); i < n; ++i) {
 		top = std::max(top, v[i].y());
-		if (is_vertical_at(v[(i + n - 1) % n], v[i], v[(i + 1) % n], tolerance)) lowest = std::min(lowest, v[i].y());
+		if (is_vertical_at(v[(i + n - 1) % n], v[i], v[(i + 1) % n], extent)) lowest = std::min(lowest, v[i].y());
 	}
 	return top - lowest;
 }

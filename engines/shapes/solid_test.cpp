@@ -42,6 +42,30 @@ TEST(Solid, does_not_depend_on_where_the_shape_stands_or_how_it_is_turned)
 	}
 }
 
+TEST(Solid, keeps_its_digits_far_from_the_origin)
+{
+	for (unsigned seed = 0; seed < 20; ++seed) {
+		Points near = star(seed), far;
+		const Vector2r shift(5e6, -3.5e6);
+		for (Vector2r& v : near) {
+			far.push_back(v + shift);
+			v = far.back() - shift;  // what is left of the digits out there
+		}
+		const Solid here = solid_of(Outline(near)), there = solid_of(Outline(far));
+		EXPECT_NEAR(there.area, here.area, 1e-13 * here.area);
+		EXPECT_NEAR(there.second_moment, here.second_moment, 1e-13 * here.second_moment);
+		EXPECT_NEAR((there.centroid - shift - here.centroid).norm(), 0, 2e-9);  // the distance of two doubles near 5e6
+	}
+}
+
+TEST(Solid, of_a_sliver_keeps_its_digits)
+{
+	const Real length = 1e4, width = 1e-3;
+	const Solid solid = solid_of(Outline({ { 0, 0 }, { length, 0 }, { length, width }, { 0, width } }));
+	EXPECT_NEAR(solid.area, 10, 1e-13 * 10);
+	EXPECT_NEAR(solid.second_moment, (length * length + width * width) / 12, 1e-13 * length * length / 12);
+}
+
 TEST(Solid, of_a_polygon_tends_to_the_disk_as_its_corners_grow_in_number)
 {
 	// An inscribed n-gon misses the area by (2/3)(pi/n)^2: 5.1e-5 for the 360 that a disk is drawn with.

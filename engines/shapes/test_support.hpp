@@ -1,11 +1,13 @@
 /// What the tests of outlines share: star-shaped polygons from a seed.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
 
 #include "engines/base/complaint.hpp"
+#include "engines/shapes/edge_index.hpp"
 #include "engines/shapes/outline.hpp"
 
 namespace graindrive::shapes {
@@ -22,6 +24,18 @@ inline Points star(unsigned seed)
 		corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
 	}
 	return corners;
+}
+
+/// Distance from a point to the nearest edge of the outline.
+inline Real distance_to(const Outline& outline, const Vector2r& point)
+{
+	if (outline.is_disk()) return std::abs(outline.disk_radius() - (point - outline.origin()).norm());
+	const Vector2r seen = point - outline.origin();
+	const Points& v = outline.corners();
+	Real nearest = 1e300;
+	for (std::size_t i = 0; i < v.size(); ++i)
+		nearest = std::min(nearest, distance_to_segment(seen, v[i], v[(i + 1) % v.size()]));
+	return nearest;
 }
 
 }  // namespace graindrive::shapes

@@ -13,6 +13,8 @@ from . import engines, scene
 from .errors import UsageError, one_line
 from .parameters import StudyParameters
 
+LARGEST_FILE = 4 << 20  # bytes; engines.read_outline reads no more
+
 
 MOST_BEADS = 10_000  # each is a disk of YADE's
 
@@ -85,18 +87,21 @@ def of_size(shape, size, bead_diameter, density):
 
 
 def outline_of(shape, orientation_deg=0):
-    """Return the outline that a name or a file means, turned by `orientation_deg`; UsageError if there is none."""
+    """Return the outline that a name or a file means, about its centroid, turned; UsageError if there is none.
+
+    `orientation_deg` may be any finite number; whole turns are taken off it first, without round-off.
+    """
     try:
         is_file = names_a_file(shape)
         drawn = engines.read_outline(os.path.expanduser(shape)) if is_file else engines.outline_of(shape)
     except ValueError as error:
         raise not_a_body(shape, error) from None
-    return drawn.turned(math.radians(orientation_deg))
+    return drawn.about_centroid.turned(math.radians(math.remainder(orientation_deg, 360)))
 
 
 def about_centroid(outline):
     """Return the corners of an outline about its centroid, shape (m, 2)."""
-    return outline.vertices - np.array(outline.centroid)
+    return outline.about_centroid.vertices
 
 
 def beads_along(outline, shape, bead_diameter, bead_spacing, mass):
@@ -149,10 +154,16 @@ class BodyParameters(StudyParameters):
 
 @functools.lru_cache(maxsize=None)
 def contents_of(path):
-    """Return what stands for a file's contents, as they are when the program first asks; "" if it cannot be read."""
+    """Return what stands for a file's contents, as they are when the program first asks; "" if it cannot be an outline.
+
+    A pipe or a device is not opened, for its contents may have no end.
+    """
+    file = Path(os.path.expanduser(path))
     try:
-        return hashlib.sha256(Path(path).expanduser().read_bytes()).hexdigest()[:12]
-    except (OSError, RuntimeError):
+        if not file.is_file() or file.stat().st_size > LARGEST_FILE:
+            return ""
+        return hashlib.sha256(file.read_bytes()).hexdigest()[:12]
+    except OSError:
         return ""
 
 
