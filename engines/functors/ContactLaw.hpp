@@ -57,12 +57,13 @@ public:
 		const yade::State& s2 = *(*scene.bodies)[id2]->state;
 		const laws::SpherePair contact{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
 			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
-		const auto arm = leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point;
 		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
-		return laws::respond(law, contact, phys.slip, scene.dt, arm);
+		return laws::respond(law, contact, phys.slip, scene.dt, arm());
 	}
 
 private:
+	laws::LeverArm arm() const { return leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point; }
+
 	void apply(const yade::ScGeom& geom, ContactPhys& phys, int id1, int id2) const
 	{
 		yade::Scene& scene = *this->scene;
@@ -72,7 +73,7 @@ private:
 		phys.shearForce = answer.tangential_force2;
 		phys.slip = answer.slip;
 		phys.slipping = answer.slipping;
-		phys.leverLoss = laws::lever_loss(arm, geom.penetrationDepth);
+		phys.leverLoss = laws::lever_loss(arm(), geom.penetrationDepth);
 		const Vector3r force2 = answer.normal_force2 + answer.tangential_force2;
 		scene.forces.addForce(id1, -force2);
 		scene.forces.addForce(id2, force2);
