@@ -76,11 +76,12 @@ py::dict present_contacts(GrainLoop& loop)
 {
 	constexpr int first_wall = -2;
 	loop::Stepper& stepper = running(loop);
-	std::vector<loop::Contact> all = stepper.present_contacts();
+	const auto [pairs, walls] = stepper.look_between_steps();
+	std::vector<loop::Contact> all = pairs;
 	const std::vector<int>& id = loop.bodies().grain_id;
 	std::vector<int> j;
 	for (const loop::Contact& c : all) j.push_back(id[c.second]);
-	for (const loop::Contact& c : stepper.wall_contacts()) {
+	for (const loop::Contact& c : walls) {
 		all.push_back(c);
 		j.push_back(first_wall - static_cast<int>(stepper.settings().walls[c.second].side));
 	}
@@ -121,7 +122,7 @@ void bind_loop()
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
 	cls.def("contacts", contacts,
 		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m] of i along z x n, shape (n,); point [m], "
-	    "the\n"
+		"the\n"
 		"middle of the overlap beside i, normal n from i to j, normal_force and tangential_force on j [N], shape (n, 3).");
 	cls.def("presentContacts", present_contacts,
 		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
