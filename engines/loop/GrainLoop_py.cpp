@@ -76,11 +76,12 @@ py::dict present_contacts(GrainLoop& loop)
 {
 	constexpr int first_wall = -2;
 	loop::Stepper& stepper = running(loop);
-	std::vector<loop::Contact> all = stepper.present_contacts();
+	const auto [pairs, walls] = stepper.look_between_steps();
+	std::vector<loop::Contact> all = pairs;
 	const std::vector<int>& id = loop.bodies().grain_id;
 	std::vector<int> j;
 	for (const loop::Contact& c : all) j.push_back(id[c.second]);
-	for (const loop::Contact& c : stepper.wall_contacts()) {
+	for (const loop::Contact& c : walls) {
 		all.push_back(c);
 		j.push_back(first_wall - static_cast<int>(stepper.settings().walls[c.second].side));
 	}

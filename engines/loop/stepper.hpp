@@ -89,6 +89,11 @@ public:
 	std::vector<Contact> contacts() const;
 	/// Contacts at the present positions, before anything moves: the forces that the next step will find, to the last bit.
 	std::vector<Contact> present_contacts();
+	/// The same and `wall_contacts`, for someone who looks between steps: no step is then under way if none was before.
+	struct Sight {
+		std::vector<Contact> pairs, walls;
+	};
+	Sight look_between_steps();
 	/// Appends the contacts on a body, as of the last `compute_body_forces` or step.
 	void touches_on(std::size_t body, std::vector<Touch>& touches) const;
 

@@ -125,6 +125,36 @@ TEST(Stepper, shows_before_a_step_the_contacts_that_the_step_will_find)
 		}
 }
 
+TEST(Stepper, can_be_saved_after_a_look_between_steps_and_goes_on_with_the_same_bits)
+{
+	for (const Precision precision : { Precision::double_, Precision::single }) {
+		Scene scene = crowd(16, 5, 2);
+		scene.precision = precision;
+		Wall wall;
+		wall.side = Side::y_low;  // at y = 0
+		scene.box.periodic_y = false;
+		Stepper looking(scene), plain(scene);
+		looking.set_wall(wall), plain.set_wall(wall);
+		std::size_t seen = 0, at_wall = 0;
+		for (int k = 0; k < 300; ++k) {
+			const auto sight = looking.look_between_steps();
+			EXPECT_FALSE(looking.step_under_way());
+			looking.step(1), plain.step(1);
+			const auto after = looking.contacts();
+			ASSERT_EQ(sight.pairs.size(), after.size());
+			for (std::size_t c = 0; c < after.size(); ++c) {
+				ASSERT_EQ(sight.pairs[c].normal, after[c].normal);
+				ASSERT_EQ(sight.pairs[c].friction, after[c].friction);
+				ASSERT_EQ(sight.pairs[c].slip, after[c].slip);
+			}
+			seen += after.size(), at_wall += sight.walls.size();
+		}
+		EXPECT_GT(seen, 1000u);
+		EXPECT_GT(at_wall, 10u);
+		EXPECT_TRUE(same_bits(looking, plain)) << "looking changed the motion";
+	}
+}
+
 TEST(Stepper, conserves_momentum)
 {
 	Stepper loop(crowd(12, 6));

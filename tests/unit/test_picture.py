@@ -153,3 +153,24 @@ def test_a_single_disk_tells_how_far_it_has_turned():
         disks.run(2000)  # 4 rad
         shown = picture.taken([1], [], body)
         assert shown.intruder["angle"] == pytest.approx(4 - 2 * np.pi, abs=2.1e-3)  # a step of 2e-3 more or less
+
+
+@pytest.mark.parametrize("fast", [False, True])
+def test_looking_changes_no_bit_and_leaves_a_scene_that_can_be_saved(tmp_path, fast):
+    from graindrive import engines, scene
+
+    def everything(*, looking):
+        grains, base, body = crowd()
+        O.engines = [*O.engines[:-1], engines.OscillationDrive(body=body, amplitude=0.1, period=0.5), O.engines[-1]]
+        if fast:
+            loop = grain_loop.use_grain_loop(periods=(WIDTH, 0), label="loop")
+        for _ in range(40):
+            if looking:
+                picture.taken(grains, base, body)
+                scene.save(tmp_path / "checkpoint")
+            disks.run(5)
+        if fast:
+            loop.sync()
+        return disks.everything()
+
+    assert np.array_equal(everything(looking=False), everything(looking=True))
