@@ -51,9 +51,7 @@ def folders(path):
 
 def discard(folder):
     """Remove a checkpoint; a kill in between leaves no half of one under its name."""
-    temporary = folder.with_name(f"{folder.name}.gone.tmp")
-    shutil.rmtree(temporary, ignore_errors=True)
-    whole_files.discard(folder, temporary)
+    whole_files.discard(folder, whole_files.beside(folder))
 
 
 def file_sum(path):

@@ -2,8 +2,8 @@
 
 usage: scripts/killtest [--kills N] [--study NAME] [--seed S] [--work DIR]
 
-Every trial starts a study, kills it (SIGKILL) at a random time, in half of the cases kills the resumed run within the first
-second of its work, perhaps again, and then lets it end. A line a kill says what was done; the last line counts lost rows,
+Every trial starts a study, kills it (SIGKILL) at a random time of its work, in half of the cases kills the resumed run within
+the first second of its work, perhaps again, and then lets it end. A line a kill says what was done; the last line counts lost rows,
 differing bits of series, frames, fields and summary (times apart), tracebacks, and folders that are wedged: another exit code
 than 0, or something left beside the result. The exit code is 1 if any of them is not 0, and the trial's folder then stays.
 """
@@ -31,8 +31,8 @@ from .headless import guarded
 
 NAME = "killtest"
 STUDIES = {  # at smoke size, with what shows most
-    "magnus": "scale=smoke travel=40 frames=4 spin_ratio=5".split(),
-    "wiggle": "scale=smoke frames=6 fields=1".split(),
+    "magnus": "scale=smoke travel=20 settle_travel=8 frames=4 spin_ratio=5".split(),
+    "wiggle": "scale=smoke time=12 frames=6 fields=1".split(),
 }
 INTERVALS = (0.0, 0.1, 1.0)  # s between checkpoints
 TIMED = ("wall_s", "particle_steps_per_second")
@@ -42,7 +42,7 @@ COUNTED = ("lost rows", "differing bits", "tracebacks", "wedged")
 
 @dataclass
 class Subject:
-    """A study under test: its folder, its run that nobody killed, and the seconds that this took."""
+    """A study under test: its folder, its run that nobody killed, and the seconds that this took once it was at work."""
 
     name: str
     place: Path
@@ -91,15 +91,17 @@ def campaign(options):
 
 
 def prepare(name, work):
-    """Run a study to its end, twice where its packing had to be made first; return the `Subject`."""
+    """Run a study to its end, twice, for its packing has to be made first; return the `Subject`."""
     for whole in (work / f"{name}-warm", work / f"{name}-whole"):
-        started = time.monotonic()
         process = start(name, whole, 60.0)
-        err = process.communicate()[1]
-        if process.returncode:
-            raise RuntimeError(f"{name} fails without being killed: {err[-500:]}")
-    print(f"{name}: {time.monotonic() - started:.1f} s without a kill", flush=True)
-    return Subject(name, work, whole, time.monotonic() - started)
+        heard = Heard(process)
+        heard.at_work.wait()
+        started = time.monotonic()
+        if process.wait():
+            raise RuntimeError(f"{name} fails without being killed: {heard.text()[-500:]}")
+    seconds = time.monotonic() - started
+    print(f"{name}: {seconds:.1f} s of work without a kill", flush=True)
+    return Subject(name, work, whole, seconds)
 
 
 def start(name, out, interval):
@@ -126,7 +128,7 @@ def killed_and_resumed(subject, trial, chance, most):
         count["kills"] += 1
         say(subject, trial, count, "at its work", words[-1], out)
     while 0 < count["kills"] < most and chance.random() < 0.5:
-        if kill_after(start(subject.name, out, interval), chance.uniform(0, 1), words, once_at_work=True):
+        if kill_after(start(subject.name, out, interval), chance.uniform(0, 1), words):
             count["kills"] += 1
             say(subject, trial, count, "just resumed", words[-1], out)
     process = start(subject.name, out, interval)
@@ -147,31 +149,38 @@ def say(subject, trial, count, when, words, out):
     print(f"{subject.name} {trial}: kill {count['kills']}, {when}: {last[0][:80]!r}, left {left}", flush=True)
 
 
-def kill_after(process, seconds, words, once_at_work=False):
-    """Kill a process after so many seconds, counted from its start or once it is at work; True if it still ran then.
-
-    What it said on stderr is added to `words`.
-    """
-    lines, at_work = [], threading.Event()
-
-    def listen():
-        for line in process.stderr:
-            lines.append(line)
-            if any(told in line for told in AT_WORK):
-                at_work.set()
-        at_work.set()
-
-    listener = threading.Thread(target=listen)
-    listener.start()
-    if once_at_work:
-        at_work.wait()
+def kill_after(process, seconds, words):
+    """Kill a process so many seconds after it is at work; True if it still ran then. What it said is added to `words`."""
+    heard = Heard(process)
+    heard.at_work.wait()
     try:
         process.wait(seconds)
     except subprocess.TimeoutExpired:
         process.kill()
-    listener.join()
-    words.append("".join(lines))
+    words.append(heard.text())
     return process.wait() < 0
+
+
+class Heard:
+    """Listens to what a process says on stderr; `at_work` is set once it has its folder, or has ended."""
+
+    def __init__(self, process):
+        self.process, self.lines, self.at_work = process, [], threading.Event()
+        self.thread = threading.Thread(target=self.listen, daemon=True)
+        self.thread.start()
+
+    def listen(self):
+        """Take in all lines."""
+        for line in self.process.stderr:
+            self.lines.append(line)
+            if any(told in line for told in AT_WORK):
+                self.at_work.set()
+        self.at_work.set()
+
+    def text(self):
+        """Return all that was said, once the process has ended."""
+        self.thread.join()
+        return "".join(self.lines)
 
 
 def judge(subject, out, code, words):
@@ -195,7 +204,7 @@ def differences(whole, other):
     bits = sum(differing_bits(expected.get(n), found.get(n)) for n in expected.keys() | found.keys())
     one, two = (summary_of(folder) for folder in (whole, other))
     keys = (one.keys() | two.keys()) - set(TIMED)
-    return max(0, lost), bits + sum(8 * 8 for key in keys if one.get(key, "") != two.get(key, ""))
+    return max(0, lost), bits + sum(64 for key in keys if one.get(key, "") != two.get(key, ""))
 
 
 def datasets(file):

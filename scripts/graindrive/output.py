@@ -1,9 +1,13 @@
-"""Words on stdout and stderr that nobody has to read: a pipe that closes or a disk that is full does not end a run."""
+"""Words on stdout and stderr that nobody has to read: a pipe that closes or a disk that is full does not end a run.
+
+`run_program` runs another Python program that way: YADE's, which writes before any script of ours.
+"""
 
 import contextlib
 import io
 import os
 import sys
+from pathlib import Path
 
 
 class Forgiving(io.RawIOBase):
@@ -61,3 +65,12 @@ def forgiving(descriptor, stream):
     raw = io.BufferedWriter(Forgiving(descriptor))
     encoding = getattr(stream, "encoding", None) or "utf-8"
     return io.TextIOWrapper(raw, encoding=encoding, errors="backslashreplace", line_buffering=True)
+
+
+def run_program():
+    """Run the Python program that the next argument names, in `__main__` as Python itself would."""
+    forgive()
+    del sys.argv[0]
+    space = sys.modules["__main__"].__dict__
+    space["__file__"] = sys.argv[0]
+    exec(compile(Path(sys.argv[0]).read_bytes(), sys.argv[0], "exec"), space)

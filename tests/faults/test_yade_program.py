@@ -38,8 +38,8 @@ class Place:
         for name in ("GRAINDRIVE_CACHE", "MPLCONFIGDIR", "YADE_BATCH", "DISPLAY"):
             self.environment.pop(name, None)
 
-    def start(self, *arguments, options=("-n", "-x"), preexec_fn=None, **environment):
-        command = ["yade", *options, str(TOY), *arguments]
+    def start(self, *arguments, options=("-n", "-x"), preexec_fn=None, program=("yade",), **environment):
+        command = [*program, *options, str(TOY), *arguments]
         pipes = dict(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         pipes.update(preexec_fn=preexec_fn)
         return subprocess.Popen(command, cwd=self.work, env={**self.environment, **environment}, **pipes)
@@ -223,5 +223,20 @@ def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
     process = place.start(preexec_fn=small_files)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 1, err[-2000:]
-    assert "toy_study: failed: " in err and "unfinished" in err
-    assert list((place.path / "tmp").iterdir()) == []
+    assert "toy_study: failed: the disk or the quota is full" in last_line(err) and "Traceback" not in err
+    assert list((place.path / "tmp").iterdir()) == [] and place.names() == []
+
+
+def test_readers_that_leave_do_not_end_the_run(place):
+    """As scripts/run starts YADE's program, which prints before any script of ours; by itself it would end."""
+    ours = "from graindrive.output import run_program; run_program()"
+    program = (sys.executable, "-P", "-c", ours, shutil.which("yade"))
+    process = place.start("out=a", program=program)
+    process.stdout.close()
+    process.stderr.close()
+    assert process.wait(60) == 0 and place.names() == ["a"]
+    with open("/dev/full", "w") as full:
+        command = [*program, "-n", "-x", str(TOY), "out=b"]
+        options = dict(cwd=place.work, env=place.environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        assert subprocess.run(command, stderr=full, timeout=60, **options).returncode == 0
+    assert place.names() == ["a", "b"]

@@ -5,6 +5,7 @@ import os
 import subprocess
 from pathlib import Path
 
+import made_up_runs
 import pytest
 from made_up_runs import KEYS, write_run
 
@@ -14,7 +15,9 @@ from graindrive.campaign.plan import read_plan
 from graindrive.errors import UsageError
 from graindrive.postproc.campaign import report, results
 from graindrive.postproc.campaign.folder import Campaign
+from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.reader import RunError
+from graindrive.run_folder import RunFolder
 
 TOY = Path(__file__).parents[1] / "faults" / "toy_study.py"
 GOOD = f"study: {TOY}\ncommon: {{scale: smoke, steps: 20}}\nsweeps:\n  a: {{seed: [1, 2]}}\n"
@@ -272,6 +275,31 @@ def test_marks_follow_the_run_folders(plan, tmp_path):
         stale.touch()
         execution.set_marks(tmp_path / "out", found)
     assert not stale.exists()
+
+
+@pytest.mark.parametrize("file", ["run.h5", "summary.json"])
+def test_a_damaged_finished_run_is_named_set_aside_and_planned_again(plan, tmp_path, file):
+    found = plan(GOOD)
+    with execution.opened(tmp_path / "out", found):
+        for run in found.runs:
+            with RunFolder(run.parameters.copy(update={"out": str(tmp_path / "out/runs" / run.name)}), study="toy"):
+                pass
+        assert execution.missing(tmp_path / "out", found) == []
+        damaged = tmp_path / "out/runs" / found.runs[0].name
+        (damaged / file).write_bytes((damaged / file).read_bytes()[:-10])
+        (line,) = execution.set_damaged_aside(tmp_path / "out", found)
+        assert f"{damaged / file} cannot be read" in line and f"it is kept as {damaged.name}.damaged and made again" in line
+        assert execution.missing(tmp_path / "out", found) == found.runs[:1]
+        assert execution.set_damaged_aside(tmp_path / "out", found) == []
+
+
+def test_a_run_that_cannot_be_read_leaves_a_report_with_the_others(tmp_path, capsys):
+    made_up_runs.make_campaign(tmp_path / "c", made_up_runs.MadeUpMagnus(), {"speed": dict(v0=[0.5, 1, 2], seed=[1, 2])})
+    first = sorted((tmp_path / "c/runs").iterdir())[0]
+    (first / "summary.json").write_text("{")
+    write_report(tmp_path / "c")
+    assert len((tmp_path / "c/table.csv").read_text().splitlines()) == 1 + 5
+    assert f"campaign: {first / 'summary.json'} cannot be read" in capsys.readouterr().err
 
 
 def test_durations_in_words():
