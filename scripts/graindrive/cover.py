@@ -16,7 +16,9 @@ def disks_inside(outline, spacing):
     grid = grid_inside(outline, spacing)
     if len(grid) == 0:
         return np.zeros((0, 3))
-    away, _ = cKDTree(points_along(outline, spacing / SAMPLES)).query(grid, distance_upper_bound=2 * spacing)  # else infinite
+    away, _ = cKDTree(points_along(outline, spacing / SAMPLES)).query(
+        grid, distance_upper_bound=2 * spacing
+    )  # else infinite
     grid = grid[away > spacing * (1 + MARGIN)]
     return np.c_[grid, np.full(len(grid), spacing)]
 
