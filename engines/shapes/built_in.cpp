@@ -65,8 +65,9 @@ void require_sizes(const Shape& shape, const Sizes& sizes)
 		throw std::invalid_argument(message.str());
 	}
 	for (const Real size : sizes) {
-		if (size > 0 && std::isfinite(size)) continue;
-		message << "sizes of shape " << shape.name << " (" << shape.takes << ") must be positive and finite, got " << size;
+		if (std::isfinite(size) && size >= smallest_length && size <= largest_length) continue;
+		message << "sizes of shape " << shape.name << " (" << shape.takes << ") must be positive and finite, from "
+				<< smallest_length << " to " << largest_length << ", got " << size;
 		throw std::invalid_argument(message.str());
 	}
 }

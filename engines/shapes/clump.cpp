@@ -58,11 +58,14 @@ Points ring(Real disk_radius, Real bead_radius, Real longest_step)
 	return centres;
 }
 
-bool is_corner(const Stretch& before, const Stretch& after)
+/// By how much the path turns between two stretches, to the left [rad].
+Real turn_between(const Stretch& before, const Stretch& after)
 {
 	const Vector2r in = before.heading(before.length), out = after.heading(0);
-	return std::abs(std::atan2(cross(in, out), in.dot(out))) > curve_turn;
+	return std::atan2(cross(in, out), in.dot(out));
 }
+
+bool is_corner(const Stretch& before, const Stretch& after) { return std::abs(turn_between(before, after)) > curve_turn; }
 
 /// The path turned so that it starts at a corner, if it has one.
 std::vector<Stretch> from_a_corner(std::vector<Stretch> path)
@@ -75,12 +78,24 @@ std::vector<Stretch> from_a_corner(std::vector<Stretch> path)
 	return path;
 }
 
-/// Beads at equal steps from the start of stretch `first` up to, and without, the start of stretch `last`.
+/// Quarters by which the path turns on its way from the start of stretch `first` to the start of stretch `last`.
+int quarter_turns(const std::vector<Stretch>& path, std::size_t first, std::size_t last)
+{
+	Real turn = 0;
+	for (std::size_t i = first; i < last; ++i) {
+		if (path[i].radius > 0) turn -= path[i].length / path[i].radius;
+		if (i > first) turn += turn_between(path[i - 1], path[i]);
+	}
+	return static_cast<int>(std::ceil(std::abs(turn) / (pi / 2) - curve_turn));
+}
+
+/// Beads at equal steps from the start of stretch `first` up to, and without, the start of stretch `last`. There is one for each
+/// quarter turn, or large beads on a short curve would all stand on one side.
 void place(const std::vector<Stretch>& path, std::size_t first, std::size_t last, Real longest_step, Points& centres)
 {
 	Real length = 0;
 	for (std::size_t i = first; i < last; ++i) length += path[i].length;
-	const int n = steps(length, longest_step);
+	const int n = std::max(steps(length, longest_step), quarter_turns(path, first, last));
 	Real start = 0;
 	for (int k = 0; k < n; ++k) {
 		const Real distance = length * k / n;

@@ -16,6 +16,7 @@ struct Clump {
 ///
 /// They stand at every corner of the inset by a bead radius, and between corners at equal steps of at most `spacing` bead
 /// diameters. Convex corners of the envelope are thus rounded by the bead radius. Turns below 0.1 rad count as part of a curve.
+/// A curve has at least one bead for each quarter turn.
 /// Every bead is within 1e-5 of its radius of touching; steps may pass the asked one by as much, for digits that a file rounds.
 /// On a disk the number of beads is a multiple of four, so that its extents along x and y are exact.
 /// @throws std::invalid_argument unless bead_diameter > 0 and 0 < spacing <= 1, and if the shape is too thin for the beads

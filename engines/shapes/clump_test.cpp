@@ -121,6 +121,18 @@ TEST(Beads, follow_a_finely_drawn_curve_without_crowding)
 	EXPECT_LE(largest_gap(drawn, centres, r), cusp * 1.01);  // the drawn polygon lies 4e-5 R inside its circle
 }
 
+TEST(Beads, stand_on_all_sides_of_a_curve_that_is_short_for_their_steps)
+{
+	const Outline drawn(Outline::disk(7).vertices());
+	for (const Real bead : { 5.0, 6.2, 6.9 }) {
+		const Points centres = beads(drawn, bead);
+		ASSERT_GE(centres.size(), 4u) << bead;
+		// Four beads on a circle of radius a leave gaps of sqrt(R^2 + a^2 - sqrt 2 R a) - R_b, R the disk's radius.
+		const Real inner = 3.5 - bead / 2, gap = std::sqrt(3.5 * 3.5 + inner * inner - std::sqrt(2.0) * 3.5 * inner) - bead / 2;
+		EXPECT_LE(largest_gap(drawn, centres, bead / 2), gap * 1.1);  // the curve's corners let beads stand a little uneven
+	}
+}
+
 TEST(Beads, stay_inside_random_stars_and_reach_their_corners)
 {
 	int made = 0;
@@ -266,7 +278,7 @@ TEST(Clump, stands_about_the_centroid_far_out_as_about_the_origin)
 {
 	const Points boot{ { 0, 0 }, { 9, 0 }, { 9, 3 }, { 4, 3 }, { 4, 10 }, { 0, 10 } };
 	Points far;
-	for (const Vector2r& v : boot) far.push_back(v + Vector2r(1 << 23, -3 << 21));  // sums without round-off
+	for (const Vector2r& v : boot) far.push_back(v + Vector2r(0x1p23, -0x3p21));  // sums without round-off
 	const Clump here = clump_of(Outline(boot), 0.5, 7), there = clump_of(Outline(far), 0.5, 7);
 	ASSERT_EQ(here.beads.size(), there.beads.size());
 	EXPECT_NEAR(here.inertia, there.inertia, 1e-13 * here.inertia);

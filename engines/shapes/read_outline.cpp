@@ -2,6 +2,7 @@
 #include "engines/shapes/read_outline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -16,12 +17,20 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 4 << 20;  // 5,000 vertices take 200 kB [bytes]
 
-void require_text(const std::string& text)
+/// A byte-order mark, or every other byte zero as far as anyone looks.
+bool is_utf16(const std::string& text)
 {
 	const std::string mark = text.substr(0, 2);
-	const bool has_zeros = text.find('\0') != std::string::npos;
-	if (mark == "\xFF\xFE" || mark == "\xFE\xFF" || (has_zeros && text.size() > 1 && (text[0] == '\0') != (text[1] == '\0')))
-		throw std::invalid_argument("an outline must be plain or UTF-8 text, got UTF-16; save it as UTF-8");
+	if (mark == "\xFF\xFE" || mark == "\xFE\xFF") return true;
+	std::array<std::size_t, 2> zeros{};
+	const std::size_t seen = std::min<std::size_t>(text.size(), 64) / 2;
+	for (std::size_t i = 0; i < 2 * seen; ++i) zeros[i % 2] += text[i] == '\0';
+	return seen > 1 && std::max(zeros[0], zeros[1]) == seen && std::min(zeros[0], zeros[1]) == 0;
+}
+
+void require_text(const std::string& text)
+{
+	if (is_utf16(text)) throw std::invalid_argument("an outline must be plain or UTF-8 text, got UTF-16; save it as UTF-8");
 	if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && !std::isspace(c); }))
 		throw std::invalid_argument("an outline must be plain or UTF-8 text, got binary data; save its vertices as CSV or WKT");
 }

@@ -11,7 +11,7 @@ namespace graindrive::shapes {
 
 namespace {
 
-constexpr Real rounding = 1e-6;  // of the extent: what rounded digits of a file may move a vertex by [-]
+constexpr Real rounding = 2e-7;  // of the extent: what digits rounded at the sixth place may move a vertex by [-]
 
 Solid disk_solid(const Outline& outline)
 {

@@ -16,7 +16,7 @@ Solid solid_of(const Outline& outline);
 
 /// l of the wiggle paper's cavity model: from the lowest point where the outline is vertical up to its top [length].
 /// A grain that has fallen past that point cannot come back; disk l = R, square and upright triangle l = their height.
-/// An edge counts as vertical if its ends lie within 2e-6 of the extent above each other.
+/// An edge counts as vertical if its ends lie above each other within 4e-7 of the extent.
 Real fall_height(const Outline& outline);
 
 }  // namespace graindrive::shapes

@@ -185,7 +185,7 @@ bool is_wkt(const std::string& text)
 	Scanner scanner(plain);
 	if (!is_geometry(tag_of(scanner.word()).geometry)) return false;
 	const char next = scanner.next();
-	if (!is_letter(next)) return next != ',' && next != ';';
+	if (!is_letter(next)) return next != ',' && next != ';' && next != '\0';  // else the name of a column
 	const std::string word = scanner.word();
 	return word == "EMPTY" || is_dimension(word);
 }
