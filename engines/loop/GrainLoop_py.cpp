@@ -102,7 +102,8 @@ void bind_loop()
 	cls.def("read", &GrainLoop::read,
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
 	cls.def("contacts", contacts,
-		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m], shape (n,); point [m], normal from i to j,\n"
+		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip [m] ([N] with cundallStrack and\n"
+		"hertzMindlin, which remember a force), shape (n,); point [m], normal from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).");
 	bind_checkpoint(cls);
 	bind_walls(cls);

@@ -84,6 +84,11 @@ void check_walls(const Scene& scene)
 			wall_length(scene, wall));
 	}
 	if (scene.walls.empty()) return;
+	require(!std::visit([](const auto& law) { return law.acts_at_contact_point; }, scene.law), scene.walls[0],
+		"the laws cundallStrack and hertzMindlin are for pairs of disks; take frozen disks, or another law; walls",
+		scene.walls.size());
+	require(scene.damping == 0, scene.walls[0], "walls need damping = 0; take frozen disks, or a law with dashpots; damping",
+		scene.damping);
 	const double critical = critical_step_at_walls(scene);
 	if (scene.dt > critical) {
 		std::ostringstream message;

@@ -1,29 +1,13 @@
 """Moves a scene built for YADE's loop over to GrainLoop, and back."""
 
-import math
-
-from . import engines
+from . import engines, loop_laws
 from .errors import UsageError
 
 REPLACED = ("ForceResetter", "InsertionSortCollider", "InteractionLoop", "NewtonIntegrator")
-LAWS = {
-    "Law2_ScGeom_ContactPhys_HertzHistory": "hertzHistory",
-    "Law2_ScGeom_ContactPhys_HertzRestitution": "hertzRestitution",
-    "Law2_ScGeom_ContactPhys_SpringDashpot": "springDashpot",
-}
-LAW_ATTRIBUTES = (
-    "normalStiffness",
-    "tangentialStiffness",
-    "normalDamping",
-    "tangentialDamping",
-    "young",
-    "poisson",
-    "restitution",
-)
 
 
 def use_grain_loop(periods=None, **settings):
-    """Replace YADE's four engines in O.engines by one GrainLoop with the same law, friction and gravity; return it.
+    """Replace YADE's four engines in O.engines by one GrainLoop with the same law, materials, damping and gravity; return it.
 
     Measures and drives stay, in their order, before it. `periods` are the lengths (x, y) after which the box repeats, 0
     where it does not; by default a periodic scene repeats in x only, as YADE's long cells are meant. Other `settings`
@@ -32,17 +16,13 @@ def use_grain_loop(periods=None, **settings):
     from yade import O
 
     contacts, newton = find("InteractionLoop"), find("NewtonIntegrator")
-    if newton.damping != 0:
-        raise UsageError(
-            f"GrainLoop has no artificial damping, NewtonIntegrator.damping is {newton.damping:g}; set it to 0"
-        )
     if periods is None:
         periods = (O.cell.size[0], 0) if O.periodic else (0, 0)
     made = engines.GrainLoop(
         gravity=newton.gravity,
-        friction=friction_of(contacts.physDispatcher.functors[0]),
         periods=(*periods, 0),
-        **law_of(contacts.lawDispatcher.functors[0]),
+        **loop_laws.law_settings(contacts),
+        **loop_laws.damping_settings(newton),
         **settings,
     )
     made_before = [e for e in O.engines if type(e).__name__ in REPLACED]
@@ -79,29 +59,3 @@ def find(name):
         if type(engine).__name__ == name:
             return engine
     raise UsageError(f"O.engines must hold a {name}; it holds {', '.join(type(e).__name__ for e in O.engines)}")
-
-
-def law_of(functor):
-    """Return GrainLoop's arguments for one of Graindrive's Law2_ functors."""
-    name = type(functor).__name__
-    if name not in LAWS:
-        raise UsageError(f"GrainLoop knows the laws {', '.join(LAWS)}; the scene uses {name}")
-    if functor.leverArm != "radius":
-        raise UsageError(
-            f"GrainLoop's friction acts at the grains' radius; the functor has leverArm='{functor.leverArm}'"
-        )
-    return dict(law=LAWS[name], **{key: getattr(functor, key) for key in LAW_ATTRIBUTES if hasattr(functor, key)})
-
-
-def friction_of(functor):
-    """Return the friction coefficient of every contact; UsageError where materials would make them differ."""
-    from yade import O
-
-    if functor.friction >= 0:
-        return functor.friction
-    angles = {m.frictionAngle for m in O.materials}
-    if len(angles) != 1:
-        raise UsageError(
-            "GrainLoop has one friction coefficient for all contacts; give it as friction=... of the Ip2_ functor"
-        )
-    return math.tan(angles.pop())
