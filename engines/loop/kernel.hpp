@@ -29,6 +29,13 @@ struct BlockOrder {
 	std::uint8_t order[grains_per_block];  ///< places within the block
 };
 
+/// A force on a free grain that is no pair's. Damping acts on the sum of all forces, so it must know them before the grain moves;
+/// without damping they may as well be added afterwards.
+struct OutsideForce {
+	double x = 0, y = 0;  ///< [N]
+	double turning = 0;   ///< torque over radius [N]
+};
+
 /// Everything the inner functions touch. Offsets, counts and order are decided by the pair list; the kernels only compute.
 struct KernelData {
 	GrainRow* rows;
@@ -54,6 +61,7 @@ struct KernelData {
 	const ContactLaw* law;
 	double damping = 0;         ///< Cundall's non-viscous damping [-]; 0: none
 	bool damps_gravity = true;  ///< gravity is damped with the other forces
+	const OutsideForce* outside = nullptr;  ///< by row, or none; read in damped scenes only
 };
 
 struct Kernel {

@@ -198,9 +198,10 @@ private:
 			const std::uint32_t g = first + block.order[k];
 			GrainRow& row = data.rows[g];
 			const Four total = k < block.with_pairs ? total_force(forces, data.slots[g].at) : Four{};
-			const double turning = turning_force(total, row) * row.inverse_mass * data.spin_response;
-			row.vx = kicked(row.vx, double(total[0]) * row.inverse_mass, data.gravity_x, data);
-			row.vy = kicked(row.vy, double(total[1]) * row.inverse_mass, data.gravity_y, data);
+			const OutsideForce more = data.outside ? data.outside[g] : OutsideForce{};
+			const double turning = (turning_force(total, row) + more.turning) * row.inverse_mass * data.spin_response;
+			row.vx = kicked(row.vx, (double(total[0]) + more.x) * row.inverse_mass, data.gravity_x, data);
+			row.vy = kicked(row.vy, (double(total[1]) + more.y) * row.inverse_mass, data.gravity_y, data);
 			row.surface_speed = kicked(row.surface_speed, turning, 0, data);
 			drift_row(row, no_speed, drift, highest);
 		}

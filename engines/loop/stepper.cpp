@@ -150,6 +150,7 @@ void Stepper::prepare()
 			check_pairs();
 			check_walls_while_running();
 		}
+		data.outside = nullptr;
 		if (!scene.walls.empty()) compute_wall_forces();
 		if (books) remember_for_books();
 	} catch (...) {

@@ -156,6 +156,7 @@ private:
 
 	void arrange_rows();
 	void place_members(std::size_t body);
+	AlignedVector<OutsideForce> outside;  // of damped scenes: by row
 	std::vector<WallTouch> wall_touches;  // near walls: by wall, then by grain
 	double moved_near_walls = std::numeric_limits<double>::infinity();
 	std::vector<Spring> given_springs;  // until the first search
@@ -236,6 +237,7 @@ private:
 	void list_wall_touches();
 	void compute_wall_forces();
 	void add_wall_forces(std::size_t body);
+	void hand_wall_forces_over();
 	void move_walls();
 	void check_walls_while_running() const;
 	void append_wall_touches(std::size_t body, std::vector<Touch>& touches) const;

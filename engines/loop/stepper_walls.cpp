@@ -87,8 +87,6 @@ void check_walls(const Scene& scene)
 	require(!std::visit([](const auto& law) { return law.acts_at_contact_point; }, scene.law), scene.walls[0],
 		"the laws cundallStrack and hertzMindlin are for pairs of disks; take frozen disks, or another law; walls",
 		scene.walls.size());
-	require(scene.damping == 0, scene.walls[0], "walls need damping = 0; take frozen disks, or a law with dashpots; damping",
-		scene.damping);
 	const double critical = critical_step_at_walls(scene);
 	if (scene.dt > critical) {
 		std::ostringstream message;
@@ -202,6 +200,22 @@ void Stepper::compute_wall_forces()
 		wall.force_x += touch.normal * m.n_x + touch.friction * m.n_y;
 		wall.force_y += touch.normal * m.n_y - touch.friction * m.n_x;
 	}
+	if (data.damping != 0) hand_wall_forces_over();
+}
+
+/// Damping acts on the sum of all forces, so the sweep must know those of the walls.
+void Stepper::hand_wall_forces_over()
+{
+	outside.assign(n_free, {});
+	for (const WallTouch& touch : wall_touches) {
+		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
+		const WallMeeting m = meeting(touch);
+		OutsideForce& force = outside[row_of[touch.grain]];
+		force.x += -touch.normal * m.n_x - touch.friction * m.n_y;
+		force.y += touch.friction * m.n_x - touch.normal * m.n_y;
+		force.turning += touch.friction;
+	}
+	data.outside = outside.data();
 }
 
 /// What walls do to a body of grains.
@@ -222,10 +236,11 @@ void Stepper::add_wall_forces(std::size_t b)
 	}
 }
 
-/// Kicks the free grains at walls, then moves the walls.
+/// Kicks the free grains at walls, unless the sweep has done it, then moves the walls.
 void Stepper::move_walls()
 {
 	for (const WallTouch& touch : wall_touches) {
+		if (data.outside) break;
 		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
 		const Wall& wall = scene.walls[touch.wall];
 		const double n_x = wall.across_x() ? wall.outward() : 0, n_y = wall.across_x() ? 0 : wall.outward();

@@ -11,23 +11,23 @@ def use_grain_loop(periods=None, **settings):
 
     Measures and drives stay, in their order, before it. `periods` are the lengths (x, y) after which the box repeats, 0
     where it does not; by default a periodic scene repeats in x only, as YADE's long cells are meant. Other `settings`
-    (precision, threads, syncEvery, ...) go to GrainLoop. Springs of present contacts begin at zero.
+    (precision, threads, syncEvery, ...) go to GrainLoop. Present contacts keep their tangential springs.
     """
     from yade import O
 
     contacts, newton = find("InteractionLoop"), find("NewtonIntegrator")
     if periods is None:
         periods = (O.cell.size[0], 0) if O.periodic else (0, 0)
-    made = engines.GrainLoop(
-        gravity=newton.gravity,
-        periods=(*periods, 0),
+    of_scene = {
         **loop_laws.law_settings(contacts),
         **loop_laws.damping_settings(newton),
-        **settings,
-    )
+        "springs": loop_laws.springs_of(contacts),
+    }
+    made = engines.GrainLoop(gravity=newton.gravity, periods=(*periods, 0), **{**of_scene, **settings})
     made_before = [e for e in O.engines if type(e).__name__ in REPLACED]
     O.engines = [e for e in O.engines if type(e).__name__ not in REPLACED] + [made]
     exchanged[made.label or "GrainLoop"] = made_before
+    O.interactions.clear()  # GrainLoop does not follow them: their springs would be stale when YADE's loop comes back
     return made
 
 

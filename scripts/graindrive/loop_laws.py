@@ -97,9 +97,7 @@ def yade_law(law, ip2, ig2):
     material = common_material("young", "poisson", "frictionAngle")
     angle = matched(ip2, "frictAngle", material.frictionAngle)
     ratios = damping_ratios(ip2) if name == "hertzMindlin" else {}
-    return dict(
-        law=name, friction=math.tan(angle), young=material.young, poisson=material.poisson, **ratios
-    )
+    return dict(law=name, friction=math.tan(angle), young=material.young, poisson=material.poisson, **ratios)
 
 
 def matched(ip2, key, value=None):
@@ -174,8 +172,8 @@ def common_material(*properties):
 def damping_settings(newton):
     """Return GrainLoop's arguments for the damping of a NewtonIntegrator.
 
-    UsageError where YADE would damp one body otherwise than the rest: State.isDamped=False, or a clump that may turn about x or y,
-    whose torque YADE damps by another rule.
+    UsageError where YADE would damp one body otherwise than the rest: State.isDamped=False, or a clump that may turn about
+    x or y, whose torque YADE damps by another rule.
     """
     from yade import O
 
@@ -191,3 +189,25 @@ def damping_settings(newton):
                 " set its state.blockedDOFs='zXY', or NewtonIntegrator.exactAsphericalRot=False"
             )
     return dict(damping=newton.damping, dampGravity=newton.dampGravity)
+
+
+# Law2_ -> the attribute of the contact's phys in which it remembers: a tangential spring [m], or YADE's own laws a force [N]
+REMEMBERED = {
+    **{name: "slip" for name in OUR_LAWS},
+    "Law2_ScGeom_FrictPhys_CundallStrack": "shearForce",
+    "Law2_ScGeom_MindlinPhys_Mindlin": "shearElastic",
+}
+
+
+def springs_of(contacts):
+    """Return what the present contacts of an InteractionLoop remember, as GrainLoop.springs: id, id, number."""
+    from yade import O
+
+    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
+    springs = []
+    for contact in O.interactions:
+        if contact.isReal:
+            x, y, _ = contact.geom.normal
+            remembered = getattr(contact.phys, attribute)
+            springs += [contact.id1, contact.id2, x * remembered[1] - y * remembered[0]]
+    return springs
