@@ -157,8 +157,8 @@ def test_plain_yade_is_off_by_its_first_order_turning(law):
     steps = contact_steps(law, **IMPACTS["oblique"]) + 5
     coarse = difference_from_plain_yade(law, "oblique", PAIR["dt"], steps)
     fine = difference_from_plain_yade(law, "oblique", PAIR["dt"] / 4, 4 * steps)
-    # A step turns the contact by s = v_t dt/r <= 3 * 2e-5 and lengthens the force by s^2/2 < 2e-9: over 500 steps 1e-6 of a velocity
-    # of about 1. Four times as many steps that add a sixteenth each leave a quarter.
+    # A step turns the contact by s = v_t dt/r <= 3 * 2e-5 and lengthens the force by s^2/2 < 2e-9: over 500 steps 1e-6 of a
+    # velocity of about 1. Four times as many steps that add a sixteenth each leave a quarter.
     assert 1e-9 < coarse < 1e-6
     assert coarse / fine == pytest.approx(4, rel=0.05)
 
@@ -195,7 +195,7 @@ def test_damping_slows_what_speeds_up_and_gravity_counts_if_asked(velocity, damp
     assert (moving_parts()[1, 4] == pytest.approx(-9.81 * 30 * O.dt, rel=1e-12)) == (not damps_gravity)
 
 
-BED_STEPS = 1000
+BED_STEPS = 600
 
 
 def bed(law, damping=0.2, **newton):
@@ -221,12 +221,12 @@ def test_a_damped_bed_with_a_clump_settles_as_on_yades_loop(law, damps_gravity):
     bed(law, dampGravity=damps_gravity)
     disks.run(BED_STEPS)
     expected = moving_parts()
-    assert sum(i.isReal for i in O.interactions) > 200
+    assert sum(i.isReal for i in O.interactions) > 150
     bed(law, dampGravity=damps_gravity)
     grain_loop.use_grain_loop()
     disks.run(BED_STEPS)
-    # At 0.3 a contact turns by 3e-5 a step and YADE lengthens its force by 5e-10; over 1000 steps that makes 5e-7 of velocities and
-    # spins of 1, times what the crowd makes of a difference, about 10 where no dashpots damp it.
+    # At 0.3 a contact turns by 3e-5 a step and YADE lengthens its force by 5e-10; over 600 steps that makes 3e-7 of velocities
+    # and spins of 1, times what the crowd makes of a difference, about 10 where no dashpots damp it.
     found = moving_parts()
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5)
     np.testing.assert_allclose(found[:, :3], expected[:, :3], rtol=0, atol=1e-7)
@@ -266,13 +266,13 @@ def test_contacts_tell_yades_forces(law):
     expected = {}
     for i in O.interactions:
         held = [O.bodies[k].state.blockedDOFs == "xyzXYZ" for k in (i.id1, i.id2)]
-        if i.isReal and not all(held):
+        if i.isReal and i.phys.normalForce.norm() > 0 and not all(held):
             sign = 1 if i.id1 < i.id2 else -1
             key = min(i.id1, i.id2), max(i.id1, i.id2)
             elastic = getattr(i.phys, ELASTIC[law]).norm()
             bound = i.phys.normalForce.norm() * math.tan(0.5)
-            forces = (*(sign * i.phys.normalForce)[:2], *(sign * i.phys.shearForce)[:2], elastic)
-            expected[key] = np.array([*forces, *i.geom.contactPoint[:2]]), elastic >= bound * (1 - 1e-9)
+            forces = (*list(sign * i.phys.normalForce)[:2], *list(sign * i.phys.shearForce)[:2], elastic)
+            expected[key] = np.array([*forces, *list(i.geom.contactPoint)[:2]]), elastic >= bound * (1 - 1e-9)
     bed(law)
     loop = grain_loop.use_grain_loop()
     disks.run(BED_STEPS)
@@ -292,7 +292,7 @@ def test_contacts_tell_yades_forces(law):
         )  # a step's way, and a disk's radius 0.45
         assert bool(table["slipping"][k]) == slipping
         seen += 1
-    assert seen == len(expected) > 200
+    assert seen == len(expected) > 150
     assert 10 < sum(table["slipping"]) < seen - 10
 
 
@@ -495,13 +495,14 @@ def test_an_ip2_of_another_law_and_a_law_of_another_kind_are_refused():
 @pytest.mark.parametrize("law", ["cundallStrack", "hertzMindlin"])
 def test_the_energy_ledger_and_walls_are_refused_by_the_laws_name(law):
     bed(law, damping=0.0)
-    grain_loop.use_grain_loop(trackEnergy=True)
-    with pytest.raises(Exception, match="no exact entries for the laws cundallStrack and hertzMindlin"):
-        disks.run(1)
+    loop = grain_loop.use_grain_loop(trackEnergy=True)
+    with pytest.raises(ValueError, match="no exact entries for the laws cundallStrack and hertzMindlin"):
+        loop.positions
     bed(law, damping=0.0)
     loop = grain_loop.use_grain_loop()
     with pytest.raises(ValueError, match="cundallStrack and hertzMindlin are for pairs of disks"):
-        loop.setWall("x_low", -1)
+        loop.setWall("x_low", position=-1)
+        loop.positions
 
 
 def test_the_energy_ledger_needs_no_damping():
