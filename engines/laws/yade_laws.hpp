@@ -60,8 +60,8 @@ struct HertzMindlin {
 		using std::sqrt;
 		const S hertz = sqrt(c.effective_radius * c.overlap);
 		const S dashpot = sqrt(c.effective_mass * hertz);
-		const S normal = max(
-			S((effective_young * P(4.0 / 3)) * hertz * c.overlap - normal_dashpot * dashpot * c.normal_velocity), S(P(0)));
+		const S normal =
+			max(S((effective_young * P(4.0 / 3)) * hertz * c.overlap - normal_dashpot * dashpot * c.normal_velocity), S(P(0)));
 		const T elastic = remembered + ((effective_shear * P(8)) * hertz * c.dt) * c.tangential_velocity;
 		const auto bound = truncated(T(-elastic), S(mu * normal));
 		const T damped = bound.value - (tangential_dashpot * dashpot) * c.tangential_velocity;

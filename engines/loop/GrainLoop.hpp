@@ -19,8 +19,10 @@ public:
 	{
 		using Self = GrainLoop;
 		visit("law", &Self::law,
-			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name; 'cundallStrack' or\n"
-			"'hertzMindlin': YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one material");
+			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name; 'cundallStrack' "
+		    "or\n"
+			"'hertzMindlin': YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one "
+		    "material");
 		visit("normalStiffness", &Self::normalStiffness, "K_n [Pa] (hertzHistory) or k_n [N/m] (springDashpot)");
 		visit("tangentialStiffness", &Self::tangentialStiffness, "K_t [Pa] or k_t [N/m]");
 		visit("normalDamping", &Self::normalDamping, "gamma_n [1/(m s)] (hertzHistory)");
@@ -55,12 +57,14 @@ public:
 		visit("wallSprings", &Self::wallSprings,
 			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
 		visit("springs", &Self::springs,
-			"id, id, tangential spring [m] of the contacts at the last sync, for O.save; with cundallStrack and hertzMindlin the\n"
+			"id, id, tangential spring [m] of the contacts at the last sync, for O.save; with cundallStrack and hertzMindlin "
+		    "the\n"
 			"elastic tangential force [N] that these laws remember");
 		visit("normalDampingRatio", &Self::normalDampingRatio, "MindlinPhys.betan, of critical [-] (hertzMindlin)");
 		visit("tangentialDampingRatio", &Self::tangentialDampingRatio, "MindlinPhys.betas, of critical [-] (hertzMindlin)");
 		visit("damping", &Self::damping,
-			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a dt/2)))");
+			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
+		    "dt/2)))");
 		visit("dampGravity", &Self::dampGravity, "damping acts on gravity too, as NewtonIntegrator.dampGravity");
 	}
 	void check() const;

@@ -135,7 +135,8 @@ std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 			value << (loop.*member).transpose();
 		else if constexpr (std::is_same_v<Value, Real> || std::is_same_v<Value, std::string>)
 			value << loop.*member;
-		const bool may_differ = name == "skin" || name == "largestOverlap" || name == "targetAreaFraction" || name == "trackEnergy";
+		const bool may_differ =
+			name == "skin" || name == "largestOverlap" || name == "targetAreaFraction" || name == "trackEnergy";
 		if (!value.str().empty() && !may_differ) all.push_back({ name, value.str() });
 	});
 	return all;

@@ -82,7 +82,8 @@ struct StiffnessOf {
 	Stiffness operator()(const laws::HertzMindlin<Real>& l) const
 	{
 		const double h = std::sqrt(radius * overlap), dashpot = std::sqrt(mass * h);
-		return { 2 * l.effective_young * h, 8 * l.effective_shear * h, l.normal_dashpot * dashpot, l.tangential_dashpot * dashpot };
+		return { 2 * l.effective_young * h, 8 * l.effective_shear * h, l.normal_dashpot * dashpot,
+			l.tangential_dashpot * dashpot };
 	}
 };
 

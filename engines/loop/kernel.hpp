@@ -7,8 +7,8 @@
 
 namespace graindrive::loop {
 
-using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>, laws::CundallStrack<Real>,
-	laws::HertzMindlin<Real>>;
+using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>,
+	laws::CundallStrack<Real>, laws::HertzMindlin<Real>>;
 
 enum class Precision { double_, single };  ///< of the contacts; positions and velocities are always double
 enum class Processor { avx512, avx2, portable };
@@ -41,9 +41,9 @@ struct KernelData {
 	GrainRow* rows;
 	const PairLink* links;
 	const void *effective_radii, *effective_masses;  ///< of each pair [m], [kg]; double or float
-	void* slips;                                     ///< tangential springs [m], or what else the law remembers; not read without friction
-	void* forces;                                    ///< PairForce<double> or <float>; forces[0] stays zero
-	const ForceSlots* slots;                         ///< of free grains
+	void* slips;              ///< tangential springs [m], or what else the law remembers; not read without friction
+	void* forces;             ///< PairForce<double> or <float>; forces[0] stays zero
+	const ForceSlots* slots;  ///< of free grains
 	const BlockOrder* block_order;
 	const Fold* folds;
 	const std::uint32_t* fold_sources;
@@ -59,8 +59,8 @@ struct KernelData {
 	double gravity_x, gravity_y;                ///< [m/s^2]
 	double spin_response;                       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
 	const ContactLaw* law;
-	double damping = 0;         ///< Cundall's non-viscous damping [-]; 0: none
-	bool damps_gravity = true;  ///< gravity is damped with the other forces
+	double damping = 0;                     ///< Cundall's non-viscous damping [-]; 0: none
+	bool damps_gravity = true;              ///< gravity is damped with the other forces
 	const OutsideForce* outside = nullptr;  ///< by row, or none; read in damped scenes only
 };
 

@@ -37,10 +37,11 @@ struct ForceParts {
 /// One contact on a member of a rigid body.
 struct Touch {
 	std::uint32_t member, partner;  ///< indices in `Scene::grains`
-	double arm_x, arm_y;            ///< from the body's centre to where the law's force acts: the member's surface, or half an overlap below [m]
-	double n_x, n_y;                ///< from the member to its partner
-	double normal, friction;        ///< F_n along -n on the member, F_t along z x n on the member [N]
-	bool slipping;                  ///< Coulomb's bound is active
+	double arm_x,
+		arm_y;  ///< from the body's centre to where the law's force acts: the member's surface, or half an overlap below [m]
+	double n_x, n_y;          ///< from the member to its partner
+	double normal, friction;  ///< F_n along -n on the member, F_t along z x n on the member [N]
+	bool slipping;            ///< Coulomb's bound is active
 };
 
 /// How a step is checked while it runs.

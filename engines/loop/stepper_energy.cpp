@@ -14,8 +14,9 @@ namespace {
 void require_explicable(const Scene& scene)
 {
 	if (std::visit([](const auto& law) { return law.remembers_force; }, scene.law))
-		throw std::invalid_argument("the energy ledger knows no exact entries for the laws cundallStrack and hertzMindlin; switch "
-									"trackEnergy off, or take hertzHistory, hertzRestitution or springDashpot");
+		throw std::invalid_argument(
+			"the energy ledger knows no exact entries for the laws cundallStrack and hertzMindlin; switch "
+			"trackEnergy off, or take hertzHistory, hertzRestitution or springDashpot");
 	if (scene.damping > 0)
 		throw std::invalid_argument(
 			sentence("the energy ledger needs damping = 0, got ", scene.damping, "; switch trackEnergy off, or damping"));

@@ -44,8 +44,7 @@ bool Stepper::at_contact_point() const
 ForceParts Stepper::parts(const PairForce<double>& f) const
 {
 	const double friction = f.friction;
-	const double normal =
-		at_contact_point() ? std::sqrt(std::max(f.x * f.x + f.y * f.y - friction * friction, 0.0)) : f.normal;
+	const double normal = at_contact_point() ? std::sqrt(std::max(f.x * f.x + f.y * f.y - friction * friction, 0.0)) : f.normal;
 	const double square = normal * normal + friction * friction;
 	if (square == 0) return { 0, 0, 0, 0 };
 	return { normal, friction, (friction * f.y - normal * f.x) / square, (-friction * f.x - normal * f.y) / square };
@@ -119,7 +118,8 @@ void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 			const ForceParts f = parts(pairs.force(share.candidate));
 			if (f.normal == 0 && f.friction == 0) continue;
 			const Candidate& pair = pairs.candidates[share.candidate];
-			const double side = share.partner ? -1 : 1, n_x = side * f.n_x, n_y = side * f.n_y;  // F_t along z x n turns round with n
+			const double side = share.partner ? -1 : 1, n_x = side * f.n_x,
+						 n_y = side * f.n_y;  // F_t along z x n turns round with n
 			const double lever = at_contact_point() ? row.radius - overlap_of(pair) / 2 : row.radius;
 			touches.push_back({ index_of[n_free + m], index_of[share.partner ? pair.first : pair.second],
 				c * members[m].x - s * members[m].y + lever * n_x, s * members[m].x + c * members[m].y + lever * n_y, n_x, n_y,

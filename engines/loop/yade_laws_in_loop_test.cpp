@@ -135,7 +135,7 @@ TEST(Damping, of_a_body_is_the_formula_axis_by_axis)
 		s.damps_gravity = damps_gravity;
 		Stepper loop(s);
 		loop.step();
-		EXPECT_DOUBLE_EQ(loop.bodies()[0].vx, 1 + 4 / 2.0 * 0.8 * 1e-3);                      // speeds up
+		EXPECT_DOUBLE_EQ(loop.bodies()[0].vx, 1 + 4 / 2.0 * 0.8 * 1e-3);                     // speeds up
 		EXPECT_DOUBLE_EQ(loop.bodies()[0].vy, 3 - 10 * (damps_gravity ? 1.2 : 1.0) * 1e-3);  // slows down
 		EXPECT_EQ(loop.bodies()[0].spin, 0.5);
 	}
@@ -157,7 +157,8 @@ TEST(Damping, acts_on_the_sum_of_all_forces_at_a_wall)
 	double y = 0.51, v = 0;
 	for (int k = 0; k < 3000; ++k) {
 		double a = -10;
-		if (y < 0.5) a += law(laws::Kinematics<Real, Real>{ 0.5 - y, v, 0, 0.5, s.grains[0].mass, s.dt }, 0.0).normal / s.grains[0].mass;
+		if (y < 0.5)
+			a += law(laws::Kinematics<Real, Real>{ 0.5 - y, v, 0, 0.5, s.grains[0].mass, s.dt }, 0.0).normal / s.grains[0].mass;
 		a *= a * (v + a * s.dt / 2) > 0 ? 0.7 : 1.3;
 		v += a * s.dt, y += v * s.dt;
 		loop.step();
