@@ -1,22 +1,9 @@
 /// The coefficients of the contact laws from material properties, as the papers tabulate them.
 #include "engines/laws/contact_laws.hpp"
 
-#include <sstream>
-#include <stdexcept>
+#include "engines/laws/require.hpp"
 
 namespace graindrive::laws {
-
-namespace {
-
-void require(bool holds, const char* rule, Real got)
-{
-	if (holds) return;
-	std::ostringstream message;
-	message << rule << ", got " << got;
-	throw std::invalid_argument(message.str());
-}
-
-}  // namespace
 
 Real damping_fraction(Real restitution)
 {

@@ -31,7 +31,7 @@ template <class S, class T, class Mask>
 struct Response {
 	S normal;       ///< F_n, along -n on i [N]
 	T tangential;   ///< F_t on i [N]
-	T slip;         ///< tangential spring s [m], to be kept with the contact
+	T slip;         ///< tangential spring s [m], to be kept with the contact; YADE's own laws keep a force [N], see yade_laws.hpp
 	Mask slipping;  ///< true where Coulomb's bound was active
 };
 
@@ -45,6 +45,8 @@ struct Response {
 /// give the bound. Cutting comes before the factor sqrt(R_eff delta), common to both sides, which saves a division.
 template <class P = Real>
 struct HertzHistory {
+	static constexpr bool acts_at_contact_point = false, remembers_force = false;
+
 	P k_n;      ///< normal stiffness K_n [Pa]
 	P k_t;      ///< tangential stiffness K_t [Pa], > 0
 	P gamma_n;  ///< normal damping [1/(m s)]
@@ -80,6 +82,8 @@ struct HertzHistory {
 /// constant fraction of critical needs delta_n, which is the reading here (LIGGGHTS takes the same).
 template <class P = Real>
 struct HertzRestitution {
+	static constexpr bool acts_at_contact_point = false, remembers_force = false;
+
 	P effective_young;   ///< E_eff = E / (2 (1 - nu^2)) [Pa]
 	P tangential_ratio;  ///< c = k*_t / k*_n [-], > 0
 	P damping_fraction;  ///< b, fraction of critical damping [-]
@@ -112,6 +116,8 @@ struct HertzRestitution {
 ///   eta = -2 ln e sqrt(m_eff k_n / (pi^2 + ln^2 e))
 template <class P = Real>
 struct SpringDashpot {
+	static constexpr bool acts_at_contact_point = false, remembers_force = false;
+
 	P k_n;      ///< normal stiffness [N/m]
 	P k_t;      ///< tangential stiffness [N/m]
 	P damping;  ///< eta / sqrt(m_eff): -2 ln e sqrt(k_n / (pi^2 + ln^2 e)) [kg^1/2 s^-1], see `spring_dashpot`

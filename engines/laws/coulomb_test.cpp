@@ -37,7 +37,7 @@ Tangential tangential(const SpringDashpot<Real>& law, Real, Real, Real mass)
 TEST(ContactLaws, tangential_force_never_passes_coulombs_bound_and_is_the_bound_where_it_slips)
 {
 	int slipping = 0, sticking = 0;
-	for_random_contacts([&](const auto& law, const auto& c, const Vector3r& spring) {
+	for_random_springs([&](const auto& law, const auto& c, const Vector3r& spring) {
 		const auto r = law(c, spring);
 		const Real bound = law.mu * std::abs(r.normal);
 		EXPECT_LE(r.tangential.norm(), bound * (1 + round_off));
@@ -52,7 +52,7 @@ TEST(ContactLaws, tangential_force_never_passes_coulombs_bound_and_is_the_bound_
 
 TEST(ContactLaws, a_sticking_spring_grows_by_the_slip_of_the_step)
 {
-	for_random_contacts([](const auto& law, const auto& c, const Vector3r& spring) {
+	for_random_springs([](const auto& law, const auto& c, const Vector3r& spring) {
 		const auto r = law(c, spring);
 		if (!r.slipping) {
 			EXPECT_EQ(r.slip, Vector3r(spring + c.tangential_velocity * c.dt));
@@ -63,7 +63,7 @@ TEST(ContactLaws, a_sticking_spring_grows_by_the_slip_of_the_step)
 TEST(ContactLaws, tangential_force_is_spring_and_dashpot_cut_at_the_bound_against_the_slip)
 {
 	int attracting = 0;
-	for_random_contacts([&](const auto& law, const auto& c, const Vector3r& spring) {
+	for_random_springs([&](const auto& law, const auto& c, const Vector3r& spring) {
 		const auto r = law(c, spring);
 		const auto [k, g] = tangential(law, c.overlap, c.effective_radius, c.effective_mass);
 		const Vector3r trial = -(k * (spring + c.tangential_velocity * c.dt) + g * c.tangential_velocity);

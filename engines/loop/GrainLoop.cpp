@@ -22,6 +22,8 @@ const char* const GrainLoop::documentation =
 loop::ContactLaw GrainLoop::contact_law() const
 {
 	if (law == "springDashpot") return laws::spring_dashpot(normalStiffness, tangentialStiffness, restitution, friction);
+	if (law == "cundallStrack") return laws::cundall_strack(young, poisson, friction);
+	if (law == "hertzMindlin") return laws::hertz_mindlin(young, poisson, normalDampingRatio, tangentialDampingRatio, friction);
 	if (law == "hertzRestitution") return laws::hertz_restitution(young, poisson, restitution, friction);
 	return laws::HertzHistory<Real>{ normalStiffness, tangentialStiffness, normalDamping, tangentialDamping, friction };
 }
@@ -32,6 +34,7 @@ loop::Scene GrainLoop::settings() const
 	s.law = contact_law();
 	s.friction = friction > 0;
 	s.gravity_x = gravity[0], s.gravity_y = gravity[1];
+	s.damping = damping, s.damps_gravity = dampGravity;
 	s.dt = scene->dt;
 	s.precision = precision == "single" ? loop::Precision::single : loop::Precision::double_;
 	s.threads = threads;

@@ -19,13 +19,17 @@ public:
 	{
 		using Self = GrainLoop;
 		visit("law", &Self::law,
-			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name");
+			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name; 'cundallStrack' "
+		    "or\n"
+			"'hertzMindlin': YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one "
+		    "material");
 		visit("normalStiffness", &Self::normalStiffness, "K_n [Pa] (hertzHistory) or k_n [N/m] (springDashpot)");
 		visit("tangentialStiffness", &Self::tangentialStiffness, "K_t [Pa] or k_t [N/m]");
 		visit("normalDamping", &Self::normalDamping, "gamma_n [1/(m s)] (hertzHistory)");
 		visit("tangentialDamping", &Self::tangentialDamping, "gamma_t [1/(m s)] (hertzHistory)");
-		visit("young", &Self::young, "Young's modulus [Pa] (hertzRestitution)");
-		visit("poisson", &Self::poisson, "Poisson's ratio [-] (hertzRestitution)");
+		visit("young", &Self::young, "Young's modulus [Pa] (hertzRestitution, hertzMindlin, cundallStrack)");
+		visit("poisson", &Self::poisson,
+			"Poisson's ratio [-] (hertzRestitution, hertzMindlin); what YADE takes as k_t/k_n (cundallStrack)");
 		visit("restitution", &Self::restitution, "coefficient of restitution [-] (hertzRestitution, springDashpot)");
 		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 compiles friction and its history out");
 		visit("gravity", &Self::gravity, "acceleration [m/s^2]");
@@ -55,7 +59,16 @@ public:
 		visit("wallSettings", &Self::wallSettings, "nine numbers a wall, as setWall leaves them, at the last sync, for O.save");
 		visit("wallSprings", &Self::wallSprings,
 			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
-		visit("springs", &Self::springs, "id, id, tangential spring [m] of the contacts at the last sync, for O.save");
+		visit("springs", &Self::springs,
+			"id, id, tangential spring [m] of the contacts at the last sync, for O.save; with cundallStrack and hertzMindlin "
+		    "the\n"
+			"elastic tangential force [N] that these laws remember");
+		visit("normalDampingRatio", &Self::normalDampingRatio, "MindlinPhys.betan, of critical [-] (hertzMindlin)");
+		visit("tangentialDampingRatio", &Self::tangentialDampingRatio, "MindlinPhys.betas, of critical [-] (hertzMindlin)");
+		visit("damping", &Self::damping,
+			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
+		    "dt/2)))");
+		visit("dampGravity", &Self::dampGravity, "damping acts on gravity too, as NewtonIntegrator.dampGravity");
 	}
 	void check() const;
 	void assigned(const std::string& name);
@@ -101,6 +114,8 @@ public:
 	std::vector<Real> springs, loads, wallSettings, wallSprings, bounds;
 	Real targetAreaFraction = 0;
 	bool trackEnergy = false;
+	Real normalDampingRatio = 0, tangentialDampingRatio = 0, damping = 0;
+	bool dampGravity = true;
 
 private:
 	std::unique_ptr<loop::Stepper> stepper_;

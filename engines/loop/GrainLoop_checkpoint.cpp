@@ -130,11 +130,14 @@ std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 		using Value = std::decay_t<decltype(loop.*member)>;
 		std::ostringstream value;
 		value.precision(17);
-		if constexpr (std::is_same_v<Value, Vector3r>)
+		if constexpr (std::is_same_v<Value, bool>)
+			value << loop.*member;
+		else if constexpr (std::is_same_v<Value, Vector3r>)
 			value << (loop.*member).transpose();
 		else if constexpr (std::is_same_v<Value, Real> || std::is_same_v<Value, std::string>)
 			value << loop.*member;
-		const bool may_differ = name == "skin" || name == "largestOverlap" || name == "targetAreaFraction";
+		const bool may_differ =
+			name == "skin" || name == "largestOverlap" || name == "targetAreaFraction" || name == "trackEnergy";
 		if (!value.str().empty() && !may_differ) all.push_back({ name, value.str() });
 	});
 	return all;

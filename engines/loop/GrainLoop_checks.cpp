@@ -1,6 +1,7 @@
 /// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, disks that meet across an axis left free.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "engines/loop/GrainLoop.hpp"
 
@@ -14,8 +15,10 @@ constexpr std::size_t numbers_per_wall = 9;
 
 void GrainLoop::check() const
 {
-	require(law == "hertzHistory" || law == "hertzRestitution" || law == "springDashpot",
-		"GrainLoop.law must be 'hertzHistory', 'hertzRestitution' or 'springDashpot'", law);
+	const char* const laws_known[] = { "hertzHistory", "hertzRestitution", "springDashpot", "cundallStrack", "hertzMindlin" };
+	require(std::count(std::begin(laws_known), std::end(laws_known), law) == 1,
+		"GrainLoop.law must be 'hertzHistory', 'hertzRestitution', 'springDashpot', 'cundallStrack' or 'hertzMindlin'", law);
+	require(damping >= 0 && damping < 1, "GrainLoop.damping must lie in [0, 1)", damping);
 	require(precision == "double" || precision == "single", "GrainLoop.precision must be 'double' or 'single'", precision);
 	require(friction >= 0, "GrainLoop.friction must not be negative", friction);
 	require(normalStiffness > 0, "GrainLoop.normalStiffness must be positive", normalStiffness);
@@ -49,7 +52,9 @@ void GrainLoop::check() const
 		"GrainLoop.bounds must be xLow, yLow, xHigh, yHigh with low <= high", "the other order");
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
 	contact_law();
-	laws::hertz_restitution(young, poisson, restitution, friction);  // their own checks, whatever the law in use
+	// Their own checks, whatever the law in use; cundallStrack takes other numbers for Poisson's ratio.
+	laws::hertz_restitution(young, law == "cundallStrack" ? 0 : poisson, restitution, friction);
+	laws::hertz_mindlin(1, 0, normalDampingRatio, tangentialDampingRatio, friction);
 }
 
 /// A cell that is long on purpose leaves an axis free; one that repeats must do so with YADE's own length.

@@ -80,7 +80,7 @@ def test_another_physics_is_refused_while_energy_is_tracked():
     loop = crowd(friction=0.2, trackEnergy=True)
     disks.run(10)
     loop.friction = 0.3
-    with pytest.raises(ValueError, match="law, friction and gravity must stay while energy is tracked"):
+    with pytest.raises(ValueError, match="law, friction, gravity and damping must stay while energy is tracked"):
         O.engines[-1]()
 
 

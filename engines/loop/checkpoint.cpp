@@ -113,7 +113,7 @@ void visit_scene(Visitor&& visit, SceneType& s)
 	visit(s.box);
 	visit(s.law);
 	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision),
-		visit(s.spin_response), visit(s.skin), visit(s.target_area_fraction);
+		visit(s.spin_response), visit(s.skin), visit(s.target_area_fraction), visit(s.damping), visit(s.damps_gravity);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// All features of a scene crossed at small size: law, friction, rotation, gravity, box, frozen grains, precision, threads.
+/// All features of a scene crossed at small size: law, friction, rotation, gravity, damping, box, frozen grains, precision, threads.
 #include <gtest/gtest.h>
 
 #include "engines/loop/test_scenes.hpp"
@@ -10,11 +10,12 @@ using namespace graindrive::loop::test;
 namespace {
 
 constexpr int side = 7, steps = 60;
-const ContactLaw every_law[] = { hertz(), laws::hertz_restitution(2e5, 0.3, 0.7, 0.4), laws::spring_dashpot(1e5, 3e4, 0.8, 0.5) };
+const ContactLaw every_law[] = { hertz(), laws::hertz_restitution(2e5, 0.3, 0.7, 0.4), laws::spring_dashpot(1e5, 3e4, 0.8, 0.5),
+	laws::cundall_strack(2e5, 0.3, 0.4), laws::hertz_mindlin(2e5, 0.3, 0.2, 0.1, 0.4) };
 
 struct Features {
 	int law;
-	bool friction, rotation, gravity, periodic_x, periodic_y, frozen;
+	bool friction, rotation, gravity, periodic_x, periodic_y, frozen, damping;
 };
 
 Scene scene_with(const Features& f)
@@ -24,6 +25,7 @@ Scene scene_with(const Features& f)
 	s.friction = f.friction, s.rotation = f.rotation;
 	if (f.gravity) s.gravity_x = 0.3, s.gravity_y = -1;
 	s.box.periodic_x = f.periodic_x, s.box.periodic_y = f.periodic_y;
+	if (f.damping) s.damping = 0.3, s.damps_gravity = f.periodic_x;
 	if (!f.frozen) return s;
 	s.bodies.push_back({});
 	s.bodies[0].frozen = true;
@@ -31,14 +33,14 @@ Scene scene_with(const Features& f)
 	return s;
 }
 
-/// Calls visit(features) for each of them.
+/// Calls visit(features) for each of them; damping goes with the parity of the others, so that any six of the seven are crossed.
 template <class Visitor>
 void cross(Visitor&& visit)
 {
-	for (int law = 0; law < 3; ++law)
+	for (int law = 0; law < 5; ++law)
 		for (int bits = 0; bits < 64; ++bits) {
 			const auto on = [&](int bit) { return bool(bits >> bit & 1); };
-			visit(Features{ law, on(0), on(1), on(2), on(3), on(4), on(5) });
+			visit(Features{ law, on(0), on(1), on(2), on(3), on(4), on(5), on(0) ^ on(1) ^ on(2) ^ on(3) ^ on(4) ^ on(5) });
 		}
 }
 
@@ -46,7 +48,7 @@ std::string name_of(const Features& f)
 {
 	return "law " + std::to_string(f.law) + (f.friction ? ", friction" : "") + (f.rotation ? ", rotation" : "") +
 	       (f.gravity ? ", gravity" : "") + (f.periodic_x ? ", periodic x" : "") + (f.periodic_y ? ", periodic y" : "") +
-	       (f.frozen ? ", frozen" : "");
+	       (f.frozen ? ", frozen" : "") + (f.damping ? ", damping" : "");
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ template <class P>
 struct alignas(4 * sizeof(P)) PairForce {
 	P x, y;      ///< [N]
 	P friction;  ///< F_t along t = z x n [N]: its torque on either grain is radius * F_t
-	P normal;    ///< F_n, > 0 repels [N]
+	P normal;  ///< F_n, > 0 repels [N]; with a law that acts at the contact point overlap/2 F_t [N m], by which torques are less
 };
 
 /// Where a grain finds its pair forces, in bytes from the first: three pairs it owns, then three it is partner in. 0 is no pair.

@@ -75,6 +75,17 @@ struct StiffnessOf {
 		const double eta = l.damping * std::sqrt(mass);
 		return { l.k_n, l.k_t, eta, eta };
 	}
+	Stiffness operator()(const laws::CundallStrack<Real>& l) const
+	{
+		const double k = 2 * l.young * radius;
+		return { k, l.tangential_ratio * k, 0, 0 };
+	}
+	Stiffness operator()(const laws::HertzMindlin<Real>& l) const
+	{
+		const double h = std::sqrt(radius * overlap), dashpot = std::sqrt(mass * h);
+		return { 2 * l.effective_young * h, 8 * l.effective_shear * h, l.normal_dashpot * dashpot,
+			l.tangential_dashpot * dashpot };
+	}
 };
 
 /// What a member of a body may touch: a grain, or a member of another body.
@@ -190,6 +201,7 @@ void check_scene(const Scene& scene)
 	require(scene.threads >= 1 && scene.threads <= 256, "threads must lie in 1..256, got ", scene.threads);
 	require(scene.skin >= 0, "skin must not be negative (0 lets the loop choose), got ", scene.skin);
 	require(scene.spin_response > 0, "m R^2/I of the grains must be positive, got ", scene.spin_response);
+	require(scene.damping >= 0 && scene.damping < 1, "damping must lie in [0, 1), got ", scene.damping);
 	check_side(scene.box.periodic_x, scene.box.x_low, scene.box.x_high, "x");
 	check_side(scene.box.periodic_y, scene.box.y_low, scene.box.y_high, "y");
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);

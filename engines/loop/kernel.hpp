@@ -2,12 +2,13 @@
 #pragma once
 #include <variant>
 
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/yade_laws.hpp"
 #include "engines/loop/grain_row.hpp"
 
 namespace graindrive::loop {
 
-using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>>;
+using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>,
+	laws::CundallStrack<Real>, laws::HertzMindlin<Real>>;
 
 enum class Precision { double_, single };  ///< of the contacts; positions and velocities are always double
 enum class Processor { avx512, avx2, portable };
@@ -28,14 +29,21 @@ struct BlockOrder {
 	std::uint8_t order[grains_per_block];  ///< places within the block
 };
 
+/// A force on a free grain that is no pair's. Damping acts on the sum of all forces, so it must know them before the grain moves;
+/// without damping they may as well be added afterwards.
+struct OutsideForce {
+	double x = 0, y = 0;  ///< [N]
+	double turning = 0;   ///< torque over radius [N]
+};
+
 /// Everything the inner functions touch. Offsets, counts and order are decided by the pair list; the kernels only compute.
 struct KernelData {
 	GrainRow* rows;
 	const PairLink* links;
 	const void *effective_radii, *effective_masses;  ///< of each pair [m], [kg]; double or float
-	void* slips;                                     ///< tangential springs [m], double or float; not read without friction
-	void* forces;                                    ///< PairForce<double> or <float>; forces[0] stays zero
-	const ForceSlots* slots;                         ///< of free grains
+	void* slips;              ///< tangential springs [m], or what else the law remembers; not read without friction
+	void* forces;             ///< PairForce<double> or <float>; forces[0] stays zero
+	const ForceSlots* slots;  ///< of free grains
 	const BlockOrder* block_order;
 	const Fold* folds;
 	const std::uint32_t* fold_sources;
@@ -51,6 +59,9 @@ struct KernelData {
 	double gravity_x, gravity_y;                ///< [m/s^2]
 	double spin_response;                       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
 	const ContactLaw* law;
+	double damping = 0;                     ///< Cundall's non-viscous damping [-]; 0: none
+	bool damps_gravity = true;              ///< gravity is damped with the other forces
+	const OutsideForce* outside = nullptr;  ///< by row, or none; read in damped scenes only
 };
 
 struct Kernel {

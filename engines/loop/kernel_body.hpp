@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <emmintrin.h>
 
+#include "engines/loop/damping.hpp"
 #include "engines/loop/row_transpose.hpp"
 
 namespace graindrive::loop {
@@ -36,7 +37,10 @@ inline PackForces<S> pack_forces(
 	laws::Kinematics<S, S> contact;
 	contact.overlap = max(overlap, zero);
 	contact.normal_velocity = dvx * n_x + dvy * n_y;
-	contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
+	if constexpr (Law::acts_at_contact_point)
+		contact.tangential_velocity = surface_speed + (reach * inverse) * (dvx * n_y - dvy * n_x);
+	else
+		contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
 	contact.effective_radius = effective_radius;
 	contact.effective_mass = effective_mass;
 	contact.dt = dt;
@@ -45,8 +49,10 @@ inline PackForces<S> pack_forces(
 	const S normal = select(touching, response.normal, zero);
 	if constexpr (!Friction) return { -(normal * n_x), -(normal * n_y), zero, normal, zero };
 	const S friction = select(touching, response.tangential, zero);
-	return { -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal,
+	PackForces<S> forces{ -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal,
 		select(touching, response.slip, zero) };
+	if constexpr (Law::acts_at_contact_point) forces.normal = (contact.overlap * S(0.5)) * friction;
+	return forces;
 }
 
 template <class Law, class P, bool Friction>
@@ -91,8 +97,10 @@ private:
 			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
 				fold(data, block);
 			const std::uint32_t first = block * grains_per_block;
-			const Two fastest =
-				move_block(data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, work.n_free - first));
+			const std::uint32_t count = std::min<std::uint32_t>(grains_per_block, work.n_free - first);
+			const Two fastest = __builtin_expect(data.damping != 0, false)
+			                        ? move_damped_block(data, data.block_order[block], first, count)
+			                        : move_block(data, data.block_order[block], first, count);
 			data.travelled[block] += std::sqrt(fastest[0] + fastest[1]) * data.drift;
 			beyond |= data.travelled[block] > data.allowed[block];
 		}
@@ -134,6 +142,22 @@ private:
 		return *reinterpret_cast<const Four*>(forces + bytes);
 	}
 
+	/// Sum of the forces on a free grain.
+	static inline Four total_force(const char* forces, const std::uint32_t* at)
+	{
+		const Four partner_sign = { -1, -1, 1, 1 };
+		const Four owned = (force_at(forces, at[0]) + force_at(forces, at[1])) + force_at(forces, at[2]);
+		const Four partnered = (force_at(forces, at[3]) + force_at(forces, at[4])) + force_at(forces, at[5]);
+		return partnered * partner_sign + owned;
+	}
+
+	/// Torque over radius [N].
+	static inline double turning_force(const Four& total, const GrainRow& row)
+	{
+		if constexpr (Law::acts_at_contact_point && Friction) return double(total[2]) - double(total[3]) / row.radius;
+		return double(total[2]);
+	}
+
 	/// Largest v_x^2 and v_y^2 among the grains moved.
 	static inline Two move_block(const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count)
 	{
@@ -142,20 +166,16 @@ private:
 		GrainRow* rows = data.rows + first;
 		const Two gravity_kick = { data.gravity_x * data.kick, data.gravity_y * data.kick };
 		const Two no_speed = {}, drift = data.drift - no_speed;
-		const Four partner_sign = { -1, -1, 1, 1 };
 		const double kick = data.kick, spin_response = data.spin_response;
 		const std::uint32_t with_pairs = block.with_pairs;
 		Two highest = {};
 		const auto kick_and_drift = [&](std::uint32_t g) __attribute__((always_inline))
 		{
-			const std::uint32_t* at = slots[g].at;
-			const Four owned = (force_at(forces, at[0]) + force_at(forces, at[1])) + force_at(forces, at[2]);
-			const Four partnered = (force_at(forces, at[3]) + force_at(forces, at[4])) + force_at(forces, at[5]);
-			const Four total = partnered * partner_sign + owned;
+			const Four total = total_force(forces, slots[g].at);
 			GrainRow& row = rows[g];
 			const double response = row.inverse_mass * kick;
 			const Two force = { double(total[0]), double(total[1]) };
-			row.surface_speed += double(total[2]) * (response * spin_response);
+			row.surface_speed += turning_force(total, row) * (response * spin_response);
 			drift_row(row, force * response + gravity_kick, drift, highest);
 		};
 		if (with_pairs == count) {
@@ -163,6 +183,27 @@ private:
 		} else {
 			for (std::uint32_t k = 0; k < with_pairs; ++k) kick_and_drift(block.order[k]);
 			for (std::uint32_t k = with_pairs; k < count; ++k) drift_row(rows[block.order[k]], gravity_kick, drift, highest);
+		}
+		return highest;
+	}
+
+	/// The same with damping, which asks every grain which way it goes. Apart, so that the code of undamped scenes stays what it is.
+	__attribute__((noinline)) static Two move_damped_block(
+		const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count)
+	{
+		const auto* forces = static_cast<const char*>(data.forces);
+		const Two no_speed = {}, drift = data.drift - no_speed;
+		Two highest = {};
+		for (std::uint32_t k = 0; k < count; ++k) {
+			const std::uint32_t g = first + block.order[k];
+			GrainRow& row = data.rows[g];
+			const Four total = k < block.with_pairs ? total_force(forces, data.slots[g].at) : Four{};
+			const OutsideForce more = data.outside ? data.outside[g] : OutsideForce{};
+			const double turning = (turning_force(total, row) + more.turning) * row.inverse_mass * data.spin_response;
+			row.vx = kicked(row.vx, (double(total[0]) + more.x) * row.inverse_mass, data.gravity_x, data);
+			row.vy = kicked(row.vy, (double(total[1]) + more.y) * row.inverse_mass, data.gravity_y, data);
+			row.surface_speed = kicked(row.surface_speed, turning, 0, data);
+			drift_row(row, no_speed, drift, highest);
 		}
 		return highest;
 	}
@@ -194,6 +235,17 @@ template <class P>
 laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l)
 {
 	return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) };
+}
+
+template <class P>
+laws::CundallStrack<P> narrow(const laws::CundallStrack<Real>& l)
+{
+	return { P(l.young), P(l.tangential_ratio), P(l.mu) };
+}
+template <class P>
+laws::HertzMindlin<P> narrow(const laws::HertzMindlin<Real>& l)
+{
+	return { P(l.effective_young), P(l.effective_shear), P(l.normal_dashpot), P(l.tangential_dashpot), P(l.mu) };
 }
 
 template <template <class> class Law, class P, bool Friction>
@@ -233,8 +285,12 @@ Kernel kernel_compiled_here(const KernelChoice& choice)
 		return kernel_of<laws::HertzHistory>(choice);
 	case 1:
 		return kernel_of<laws::HertzRestitution>(choice);
-	default:
+	case 2:
 		return kernel_of<laws::SpringDashpot>(choice);
+	case 3:
+		return kernel_of<laws::CundallStrack>(choice);
+	default:
+		return kernel_of<laws::HertzMindlin>(choice);
 	}
 }
 

@@ -48,6 +48,8 @@ struct Scene {
 	bool friction = true;                 ///< off: no tangential force and no history
 	bool rotation = true;                 ///< off: spins stay as they are
 	double gravity_x = 0, gravity_y = 0;  ///< [m/s^2]
+	double damping = 0;                   ///< Cundall's non-viscous damping [-], see damping.hpp
+	bool damps_gravity = true;            ///< gravity is damped with the other forces
 	double dt = 0;                        ///< time step [s]
 	Precision precision = Precision::double_;
 	int threads = 1;

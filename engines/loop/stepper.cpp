@@ -26,6 +26,8 @@ void Stepper::set_up_kernels()
 	data.gravity_y = scene.gravity_y;
 	data.spin_response = scene.rotation ? scene.spin_response : 0;
 	data.law = &scene.law;
+	data.damping = scene.damping;
+	data.damps_gravity = scene.damps_gravity;
 	if (scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = scene.box.x_high - scene.box.x_low);
 	if (scene.box.periodic_y) data.inverse_length_y = 1 / (data.length_y = scene.box.y_high - scene.box.y_low);
 	thread_beyond.assign(scene.threads, 0);
@@ -163,6 +165,7 @@ void Stepper::prepare()
 			check_walls_while_running();
 		}
 		if (!scene.walls.empty()) compute_wall_forces();
+		hand_outside_forces_over();
 		if (books) remember_for_books();
 	} catch (...) {
 		failure = std::current_exception();

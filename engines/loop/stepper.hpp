@@ -15,26 +15,33 @@ namespace graindrive::loop {
 struct Contact {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
 	double n_x, n_y;              ///< from first to second
-	double point_x, point_y;      ///< on the surface of first [m]
+	double point_x, point_y;      ///< where the law's force acts on first: on its surface, or half an overlap below [m]
 	double normal, friction;      ///< F_n > 0 repels, F_t along z x n on first [N]
 	double overlap;               ///< [m]
-	double slip;                  ///< tangential spring [m]
+	double slip;                  ///< tangential spring [m], or the force [N] that YADE's own laws remember
 	bool slipping;                ///< Coulomb's bound is active
 };
 
-/// The tangential spring of two grains; its sign does not change when they change places.
+/// The tangential spring of two grains, or what else the law remembers; its sign does not change when they change places.
 struct Spring {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
-	double slip;                  ///< [m]
+	double slip;                  ///< [m]; [N] with a law that remembers a force
+};
+
+/// A pair's force on its owner, -F_n n + F_t (z x n).
+struct ForceParts {
+	double normal, friction;  ///< F_n > 0 repels, F_t [N]
+	double n_x, n_y;          ///< from the owner to its partner
 };
 
 /// One contact on a member of a rigid body.
 struct Touch {
 	std::uint32_t member, partner;  ///< indices in `Scene::grains`
-	double arm_x, arm_y;            ///< from the body's centre to the contact point, on the member's surface [m]
-	double n_x, n_y;                ///< from the member to its partner
-	double normal, friction;        ///< F_n along -n on the member, F_t along z x n on the member [N]
-	bool slipping;                  ///< Coulomb's bound is active
+	double arm_x,
+		arm_y;  ///< from the body's centre to where the law's force acts: the member's surface, or half an overlap below [m]
+	double n_x, n_y;          ///< from the member to its partner
+	double normal, friction;  ///< F_n along -n on the member, F_t along z x n on the member [N]
+	bool slipping;            ///< Coulomb's bound is active
 };
 
 /// A force and a torque from outside on a free grain.
@@ -174,6 +181,7 @@ private:
 	void arrange_rows();
 	void measure_reach();
 	void place_members(std::size_t body);
+	AlignedVector<OutsideForce> outside;  // of damped scenes: by row
 	std::vector<WallTouch> wall_touches;  // near walls: by wall, then by grain
 	double moved_near_walls = std::numeric_limits<double>::infinity();
 	std::vector<Spring> given_springs;  // until the first search
@@ -213,6 +221,9 @@ private:
 	void kick_grain(std::uint32_t at, double force_x, double force_y, double surface_force);
 	void push_grains();
 	void move_body(std::size_t body);
+	void kick(RigidBody& body) const;
+	void kick_damped(RigidBody& body) const;
+	bool at_contact_point() const;
 	void collect_forces(std::size_t body);
 	std::uint32_t n_blocks() const { return (n_free + grains_per_block - 1) / grains_per_block; }
 	std::uint32_t party_of(std::uint32_t row) const;
@@ -224,6 +235,9 @@ private:
 	double farthest_before_selection() const;
 	void spend_budgets();
 	double slipping_bound() const;
+	double overlap_of(const Candidate& pair) const;
+	ForceParts parts(const PairForce<double>& force) const;
+	bool slips(const ForceParts& force, double remembered) const;
 
 	struct Books {
 		EnergyLedger ledger;
@@ -252,6 +266,7 @@ private:
 	void list_wall_touches();
 	void compute_wall_forces();
 	void add_wall_forces(std::size_t body);
+	void hand_outside_forces_over();
 	void move_walls();
 	void check_walls_while_running() const;
 	void append_wall_touches(std::size_t body, std::vector<Touch>& touches) const;

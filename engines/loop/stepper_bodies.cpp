@@ -1,6 +1,7 @@
 /// Rigid bodies: forces of their members added in a fixed order, leapfrog for what responds, members carried along.
 #include <cmath>
 
+#include "engines/loop/damping.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
@@ -11,29 +12,45 @@ void Stepper::collect_forces(std::size_t b)
 	body.force_x = body.force_y = body.torque = 0;
 	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
 		const GrainRow& row = rows[n_free + m];
-		double x = 0, y = 0, friction = 0;
+		double x = 0, y = 0, friction = 0, less = 0;
 		for (std::uint32_t s = pairs.member_begin[m]; s < pairs.member_begin[m + 1]; ++s) {
 			const PairForce<double> force = pairs.force(pairs.member_shares[s].candidate);
 			const double side = pairs.member_shares[s].partner ? -1 : 1;
 			x += side * force.x;
 			y += side * force.y;
 			friction += force.friction;
+			less += force.normal;
 		}
 		const double arm_x = row.x - members[m].shift_x - body.x, arm_y = row.y - members[m].shift_y - body.y;
 		body.force_x += x;
 		body.force_y += y;
 		body.torque += arm_x * y - arm_y * x + row.radius * friction;
+		if (at_contact_point()) body.torque -= less;
 	}
 	if (!wall_touches.empty()) add_wall_forces(b);
+}
+
+/// What responds, with damping.
+void Stepper::kick_damped(RigidBody& body) const
+{
+	const double force_x = body.force_x + body.load_x + body.push_x, force_y = body.force_y + body.load_y + body.push_y;
+	if (body.responds_x) body.vx = kicked(body.vx, force_x / body.mass, data.gravity_x, data);
+	if (body.responds_y) body.vy = kicked(body.vy, force_y / body.mass, data.gravity_y, data);
+	if (body.responds_spin) body.spin = kicked(body.spin, (body.torque + body.push_torque) / body.inertia, 0, data);
+}
+
+void Stepper::kick(RigidBody& body) const
+{
+	const double force_x = body.force_x + body.load_x + body.push_x, force_y = body.force_y + body.load_y + body.push_y;
+	if (body.responds_x) body.vx += (force_x / body.mass + data.gravity_x) * data.kick;
+	if (body.responds_y) body.vy += (force_y / body.mass + data.gravity_y) * data.kick;
+	if (body.responds_spin) body.spin += (body.torque + body.push_torque) / body.inertia * data.kick;
 }
 
 void Stepper::move_body(std::size_t b)
 {
 	RigidBody& body = scene.bodies[b];
-	const double force_x = body.force_x + body.load_x + body.push_x, force_y = body.force_y + body.load_y + body.push_y;
-	if (body.responds_x) body.vx += (force_x / body.mass + data.gravity_x) * data.kick;
-	if (body.responds_y) body.vy += (force_y / body.mass + data.gravity_y) * data.kick;
-	if (body.responds_spin) body.spin += (body.torque + body.push_torque) / body.inertia * data.kick;
+	data.damping != 0 ? kick_damped(body) : kick(body);
 	body.x += body.vx * data.drift;
 	body.y += body.vy * data.drift;
 	body.angle += body.spin * data.drift;

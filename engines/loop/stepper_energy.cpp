@@ -2,15 +2,34 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "engines/loop/guards.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
+
+namespace {
+
+/// YADE's own laws lengthen what they remember by another velocity than the one that their force works on, and what damping takes depends
+/// on the sum of all forces: neither has entries that are exact.
+void require_explicable(const Scene& scene)
+{
+	if (std::visit([](const auto& law) { return law.remembers_force; }, scene.law))
+		throw std::invalid_argument(
+			"the energy ledger knows no exact entries for the laws cundallStrack and hertzMindlin; switch "
+			"trackEnergy off, or take hertzHistory, hertzRestitution or springDashpot");
+	if (scene.damping > 0)
+		throw std::invalid_argument(
+			sentence("the energy ledger needs damping = 0, got ", scene.damping, "; switch trackEnergy off, or damping"));
+}
+
+}  // namespace
 
 void Stepper::track_energy(bool on)
 {
 	if (on == bool(books)) return;
 	if (body_forces_known) throw std::runtime_error("the energy ledger opens and closes between steps, and a step is under way");
 	books.reset();
+	if (on) require_explicable(scene);
 	if (on) books.reset(new Books{ EnergyLedger(scene.law, scene.friction, scene.dt), {}, {}, {}, {}, {} });
 }
 

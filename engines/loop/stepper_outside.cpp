@@ -39,8 +39,32 @@ void Stepper::kick_grain(std::uint32_t at, double force_x, double force_y, doubl
 	selection_due |= travelled[block] > allowed[block];
 }
 
+/// Damping acts on the sum of all forces, so the sweep must know those of walls and pushes; without damping they come after it.
+void Stepper::hand_outside_forces_over()
+{
+	data.outside = nullptr;
+	if (data.damping == 0 || (wall_touches.empty() && pushes.empty())) return;
+	outside.assign(n_free, {});
+	for (const WallTouch& touch : wall_touches) {
+		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
+		const WallMeeting m = meeting(touch);
+		OutsideForce& force = outside[row_of[touch.grain]];
+		force.x += -touch.normal * m.n_x - touch.friction * m.n_y;
+		force.y += touch.friction * m.n_x - touch.normal * m.n_y;
+		force.turning += touch.friction;
+	}
+	for (const Push& push : pushes) {
+		OutsideForce& force = outside[row_of[push.grain]];
+		force.x += push.x;
+		force.y += push.y;
+		force.turning += push.torque / rows[row_of[push.grain]].radius;
+	}
+	data.outside = outside.data();
+}
+
 void Stepper::push_grains()
 {
+	if (data.outside) return;  // the sweep has done it
 	for (const Push& push : pushes) {
 		const std::uint32_t at = row_of[push.grain];
 		kick_grain(at, push.x, push.y, push.torque / rows[at].radius);
@@ -53,6 +77,7 @@ void Stepper::set_pushes(std::vector<Push> on_grains)
 		if (push.grain >= n_grains || scene.grains[push.grain].body != free_grain)
 			throw std::invalid_argument(sentence("a push acts on a free grain; got grain ", push.grain));
 	pushes = std::move(on_grains);
+	if (body_forces_known) hand_outside_forces_over();
 }
 
 /// Springs of the pairs that were computed early go back to where they were, so that those can be computed again.
@@ -82,11 +107,13 @@ void Stepper::change(const Scene& wanted)
 	changed.law = wanted.law, changed.friction = wanted.friction, changed.precision = wanted.precision;
 	changed.gravity_x = wanted.gravity_x, changed.gravity_y = wanted.gravity_y;
 	changed.threads = wanted.threads, changed.skin = wanted.skin;
+	changed.damping = wanted.damping, changed.damps_gravity = wanted.damps_gravity;
 	const bool other_physics = !same(changed.law, scene.law) || changed.friction != scene.friction ||
-	                           changed.gravity_x != scene.gravity_x || changed.gravity_y != scene.gravity_y;
+	                           changed.gravity_x != scene.gravity_x || changed.gravity_y != scene.gravity_y ||
+	                           changed.damping != scene.damping;
 	if (books && other_physics)
 		throw std::invalid_argument(
-			"law, friction and gravity must stay while energy is tracked; switch trackEnergy off and on again");
+			"law, friction, gravity and damping must stay while energy is tracked; switch trackEnergy off and on again");
 	check_scene(changed);
 	check_walls(changed);
 	take_back_body_forces();

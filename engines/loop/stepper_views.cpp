@@ -1,4 +1,5 @@
 /// What others may look at: grains in the order they were given, contacts, energies.
+#include <algorithm>
 #include <cmath>
 
 #include "engines/loop/stepper.hpp"
@@ -40,16 +41,28 @@ void Stepper::spins(double* spin) const
 	for (std::size_t i = 0; i < size(); ++i) spin[i] = rows[row_of[i]].surface_speed / rows[row_of[i]].radius;
 }
 
-namespace {
-
-/// n from the owner to its partner, from F = -F_n n + F_t (z x n) on the owner.
-Vector2r normal_of(const PairForce<double>& f)
+/// True where forces act half an overlap below the surface; without friction it makes no difference.
+bool Stepper::at_contact_point() const
 {
-	const double square = f.normal * f.normal + f.friction * f.friction;
-	return Vector2r(f.friction * f.y - f.normal * f.x, -f.friction * f.x - f.normal * f.y) / square;
+	return scene.friction && std::visit([](const auto& law) { return law.acts_at_contact_point; }, scene.law);
 }
 
-}  // namespace
+/// The laws that act at the contact point store a torque in the place of F_n; they never pull, so F_n follows from the whole.
+ForceParts Stepper::parts(const PairForce<double>& f) const
+{
+	const double friction = f.friction;
+	const double normal = at_contact_point() ? std::sqrt(std::max(f.x * f.x + f.y * f.y - friction * friction, 0.0)) : f.normal;
+	const double square = normal * normal + friction * friction;
+	if (square == 0) return { 0, 0, 0, 0 };
+	return { normal, friction, (friction * f.y - normal * f.x) / square, (-friction * f.x - normal * f.y) / square };
+}
+
+/// What a law remembers as a force is what it holds to Coulomb's bound: a dashpot comes on top of it.
+bool Stepper::slips(const ForceParts& force, double remembered) const
+{
+	const bool is_force = std::visit([](const auto& law) { return law.remembers_force; }, scene.law);
+	return std::abs(is_force ? remembered : force.friction) >= slipping_bound() * std::abs(force.normal);
+}
 
 /// |F_t| / |F_n| from which a contact counts as slipping, less the round-off of its precision.
 double Stepper::slipping_bound() const
@@ -61,17 +74,15 @@ double Stepper::slipping_bound() const
 std::vector<Contact> Stepper::contacts() const
 {
 	std::vector<Contact> found;
-	const double bound = slipping_bound();
 	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
-		const PairForce<double> f = pairs.force(c);
+		const ForceParts f = parts(pairs.force(c));
 		if (f.normal == 0 && f.friction == 0) continue;
 		const Candidate& pair = pairs.candidates[c];
-		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
-		const Separation d = separation(a, b, scene.box);
-		const Vector2r n = normal_of(f);
-		found.push_back({ index_of[pair.first], index_of[pair.second], n[0], n[1], a.x + a.radius * n[0], a.y + a.radius * n[1],
-			f.normal, f.friction, a.radius + b.radius - std::hypot(d.x, d.y), pairs.slip(c),
-			std::abs(f.friction) >= bound * std::abs(f.normal) });
+		const GrainRow& a = rows[pair.first];
+		const double overlap = overlap_of(pair), slip = pairs.slip(c);
+		const double lever = at_contact_point() ? a.radius - overlap / 2 : a.radius;
+		found.push_back({ index_of[pair.first], index_of[pair.second], f.n_x, f.n_y, a.x + lever * f.n_x, a.y + lever * f.n_y,
+			f.normal, f.friction, overlap, slip, slips(f, slip) });
 	}
 	return found;
 }
@@ -121,22 +132,30 @@ std::vector<Spring> Stepper::springs() const
 	return found;
 }
 
+double Stepper::overlap_of(const Candidate& pair) const
+{
+	const GrainRow &a = rows[pair.first], &b = rows[pair.second];
+	const Separation d = separation(a, b, scene.box);
+	return a.radius + b.radius - std::hypot(d.x, d.y);
+}
+
 void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 {
-	const double bound = slipping_bound();
 	const RigidBody& body = scene.bodies[b];
 	const double c = std::cos(body.angle), s = std::sin(body.angle);
 	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
 		const GrainRow& row = rows[n_free + m];
 		for (std::uint32_t k = pairs.member_begin[m]; k < pairs.member_begin[m + 1]; ++k) {
 			const PairList::Share share = pairs.member_shares[k];
-			const PairForce<double> f = pairs.force(share.candidate);
+			const ForceParts f = parts(pairs.force(share.candidate));
 			if (f.normal == 0 && f.friction == 0) continue;
 			const Candidate& pair = pairs.candidates[share.candidate];
-			const Vector2r n = share.partner ? Vector2r(-normal_of(f)) : normal_of(f);  // F_t along z x n turns round with n
+			const double side = share.partner ? -1 : 1, n_x = side * f.n_x,
+						 n_y = side * f.n_y;  // F_t along z x n turns round with n
+			const double lever = at_contact_point() ? row.radius - overlap_of(pair) / 2 : row.radius;
 			touches.push_back({ index_of[n_free + m], index_of[share.partner ? pair.first : pair.second],
-				c * members[m].x - s * members[m].y + row.radius * n[0], s * members[m].x + c * members[m].y + row.radius * n[1],
-				n[0], n[1], f.normal, f.friction, std::abs(f.friction) >= bound * std::abs(f.normal) });
+				c * members[m].x - s * members[m].y + lever * n_x, s * members[m].x + c * members[m].y + lever * n_y, n_x, n_y,
+				f.normal, f.friction, slips(f, pairs.slip(share.candidate)) });
 		}
 	}
 	if (!wall_touches.empty()) append_wall_touches(b, touches);

@@ -83,6 +83,9 @@ void check_walls(const Scene& scene)
 			wall_length(scene, wall));
 	}
 	if (scene.walls.empty()) return;
+	require(!std::visit([](const auto& law) { return law.acts_at_contact_point; }, scene.law), scene.walls[0],
+		"the laws cundallStrack and hertzMindlin are for pairs of disks; take frozen disks, or another law; walls",
+		scene.walls.size());
 	const double critical = critical_step_at_walls(scene);
 	if (scene.dt > critical) {
 		std::ostringstream message;
@@ -216,10 +219,11 @@ void Stepper::add_wall_forces(std::size_t b)
 	}
 }
 
-/// Kicks the free grains at walls, then moves the walls.
+/// Kicks the free grains at walls, unless the sweep has done it, then moves the walls.
 void Stepper::move_walls()
 {
 	for (const WallTouch& touch : wall_touches) {
+		if (data.outside) break;
 		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
 		const Wall& wall = scene.walls[touch.wall];
 		const double n_x = wall.across_x() ? wall.outward() : 0, n_y = wall.across_x() ? 0 : wall.outward();

@@ -50,13 +50,21 @@ public:
 		for (std::size_t i = 0; i < n; ++i) {
 			Grain& g = s.grains[i];
 			if (g.body != free_grain) continue;
-			g.vx += (fx[i] / g.mass + s.gravity_x) * s.dt, g.vy += (fy[i] / g.mass + s.gravity_y) * s.dt;
-			if (s.rotation) g.spin += torque[i] / (g.mass * g.radius * g.radius / 2) * s.dt;
+			kick(g.vx, fx[i] / g.mass, s.gravity_x), kick(g.vy, fy[i] / g.mass, s.gravity_y);
+			if (s.rotation) kick(g.spin, torque[i] / (g.mass * g.radius * g.radius / 2), 0);
 			g.x += g.vx * s.dt, g.y += g.vy * s.dt;
 		}
 	}
 
 private:
+	/// Less of what speeds up, more of what slows down.
+	void kick(double& velocity, double pull, double gravity) const
+	{
+		double a = pull + (s.damps_gravity ? gravity : 0);
+		a *= a * (velocity + a * s.dt / 2) > 0 ? 1 - s.damping : 1 + s.damping;
+		velocity += (a + (s.damps_gravity ? 0 : gravity)) * s.dt;
+	}
+
 	std::map<std::pair<std::size_t, std::size_t>, double> slips;
 
 	static double nearest(double d, bool periodic, double length)
@@ -76,8 +84,10 @@ private:
 			return;
 		}
 		const double nx = dx / r, ny = dy / r, dvx = b.vx - a.vx, dvy = b.vy - a.vy;
+		const bool at_contact_point = std::visit([](const auto& law) { return law.acts_at_contact_point; }, s.law);
+		const double stretch = at_contact_point ? (a.radius + b.radius) / r : 1;
 		laws::Kinematics<Real, Real> contact{ overlap, dvx * nx + dvy * ny,
-			a.radius * a.spin + b.radius * b.spin - (dvy * nx - dvx * ny), a.radius * b.radius / (a.radius + b.radius),
+			a.radius * a.spin + b.radius * b.spin - stretch * (dvy * nx - dvx * ny), a.radius * b.radius / (a.radius + b.radius),
 			a.mass * b.mass / (a.mass + b.mass), s.dt };
 		double& slip = slips[{ i, j }];
 		const auto answer = std::visit(
@@ -90,7 +100,8 @@ private:
 		slip = answer[2];
 		const double x = -answer[0] * nx - answer[1] * ny, y = -answer[0] * ny + answer[1] * nx;
 		fx[i] += x, fy[i] += y, fx[j] -= x, fy[j] -= y;
-		torque[i] += a.radius * answer[1], torque[j] += b.radius * answer[1];
+		const double below = at_contact_point ? overlap / 2 : 0;
+		torque[i] += (a.radius - below) * answer[1], torque[j] += (b.radius - below) * answer[1];
 	}
 };
 
