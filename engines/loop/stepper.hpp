@@ -15,7 +15,7 @@ namespace graindrive::loop {
 struct Contact {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
 	double n_x, n_y;              ///< from first to second
-	double point_x, point_y;      ///< where the law's force acts on first: on its surface, or half an overlap below [m]
+	double point_x, point_y;      ///< on the surface of first [m]
 	double normal, friction;      ///< F_n > 0 repels, F_t along z x n on first [N]
 	double overlap;               ///< [m]
 	double slip;                  ///< tangential spring [m], or the force [N] that YADE's own laws remember

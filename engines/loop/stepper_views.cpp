@@ -80,9 +80,8 @@ std::vector<Contact> Stepper::contacts() const
 		const Candidate& pair = pairs.candidates[c];
 		const GrainRow& a = rows[pair.first];
 		const double overlap = overlap_of(pair), slip = pairs.slip(c);
-		const double lever = at_contact_point() ? a.radius - overlap / 2 : a.radius;
-		found.push_back({ index_of[pair.first], index_of[pair.second], f.n_x, f.n_y, a.x + lever * f.n_x, a.y + lever * f.n_y,
-			f.normal, f.friction, overlap, slip, slips(f, slip) });
+		found.push_back({ index_of[pair.first], index_of[pair.second], f.n_x, f.n_y, a.x + a.radius * f.n_x,
+			a.y + a.radius * f.n_y, f.normal, f.friction, overlap, slip, slips(f, slip) });
 	}
 	return found;
 }

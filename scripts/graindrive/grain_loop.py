@@ -34,6 +34,7 @@ def use_grain_loop(periods=None, **settings):
     except Exception:
         O.engines = before
         raise
+    O.interactions.clear()  # GrainLoop does not follow them; its own contacts are in contacts()
     exchanged[made.label or "GrainLoop"] = loop
     return made
 
