@@ -103,9 +103,8 @@ TEST(YadeLawsInLoop, contacts_tell_the_laws_own_forces)
 			const double dx = b.x - a.x, dy = b.y - a.y, r = std::hypot(dx, dy);
 			EXPECT_NEAR(c.n_x, dx / r, 1e-11);
 			EXPECT_NEAR(c.n_y, dy / r, 1e-11);
-			const double lever = a.radius - c.overlap / 2;
-			EXPECT_NEAR(c.point_x, a.x + lever * c.n_x, 1e-12);
-			EXPECT_NEAR(c.point_y, a.y + lever * c.n_y, 1e-12);
+			EXPECT_NEAR(c.point_x, a.x + a.radius * c.n_x, 1e-12);
+			EXPECT_NEAR(c.point_y, a.y + a.radius * c.n_y, 1e-12);
 			EXPECT_LE(std::abs(c.slip), 0.4 * c.normal * (1 + 1e-12));
 			EXPECT_EQ(c.slipping, std::abs(c.slip) >= 0.4 * c.normal * (1 - 1e-12));
 			if (law.index() == 3) {
