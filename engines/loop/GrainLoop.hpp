@@ -20,9 +20,9 @@ public:
 		using Self = GrainLoop;
 		visit("law", &Self::law,
 			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name; 'cundallStrack' "
-		    "or\n"
+			"or\n"
 			"'hertzMindlin': YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one "
-		    "material");
+			"material");
 		visit("normalStiffness", &Self::normalStiffness, "K_n [Pa] (hertzHistory) or k_n [N/m] (springDashpot)");
 		visit("tangentialStiffness", &Self::tangentialStiffness, "K_t [Pa] or k_t [N/m]");
 		visit("normalDamping", &Self::normalDamping, "gamma_n [1/(m s)] (hertzHistory)");
@@ -61,13 +61,13 @@ public:
 			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
 		visit("springs", &Self::springs,
 			"id, id, tangential spring [m] of the contacts at the last sync, for O.save; with cundallStrack and hertzMindlin "
-		    "the\n"
+			"the\n"
 			"elastic tangential force [N] that these laws remember");
 		visit("normalDampingRatio", &Self::normalDampingRatio, "MindlinPhys.betan, of critical [-] (hertzMindlin)");
 		visit("tangentialDampingRatio", &Self::tangentialDampingRatio, "MindlinPhys.betas, of critical [-] (hertzMindlin)");
 		visit("damping", &Self::damping,
 			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
-		    "dt/2)))");
+			"dt/2)))");
 		visit("dampGravity", &Self::dampGravity, "damping acts on gravity too, as NewtonIntegrator.dampGravity");
 	}
 	void check() const;

@@ -79,7 +79,11 @@ def hand_settings_back(loop, before):
                     f"GrainLoop.{key} is {getattr(loop, key)}, and {value} in the scene's materials and functors;"
                     " make them equal before going back"
                 )
-    before.newton.gravity, before.newton.damping, before.newton.dampGravity = loop.gravity, loop.damping, loop.dampGravity
+    before.newton.gravity, before.newton.damping, before.newton.dampGravity = (
+        loop.gravity,
+        loop.damping,
+        loop.dampGravity,
+    )
     if getattr(ip2, "friction", -1) >= 0:
         ip2.friction = loop.friction
     for key in loop_laws.OUR_ATTRIBUTES:
