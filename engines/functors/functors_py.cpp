@@ -46,7 +46,7 @@ void bind_functors()
 	py::def("present_contacts", present_contacts_table, (py::arg("scene"), py::arg("law"), py::arg("contact_maker")),
 		"Contacts of the disks and spheres of a scene (O._sceneObj) at the present positions, those that YADE's next step will\n"
 		"find, by one of our Law2_ functors and our Ip2_: arrays as of `contact_table`, without point, with slip [m] along z x "
-	    "n.\n"
+		"n.\n"
 		"Nothing changes. Pairs of frozen bodies and of members of one clump are left out. Raises TypeError for another law.");
 }
 

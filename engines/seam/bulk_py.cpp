@@ -81,9 +81,9 @@ void bind_bulk()
 		"spin [rad/s], shape (n, 3). A clump appears through its members.");
 	py::def("contact_table", contacts, (py::arg("scene")),
 		"Interactions of a scene (O._sceneObj), those of the last step, as arrays: i, j, slipping, overlap [m], slip [m] of i "
-	    "along\n"
+		"along\n"
 		"z x n (of our laws, else 0), shape (n,); point [m] (in i's periodic image), normal n from i to j, normal_force and "
-	    "tangential_force on j [N], shape (n, 3).");
+		"tangential_force on j [N], shape (n, 3).");
 }
 
 }  // namespace graindrive
