@@ -99,26 +99,12 @@ std::vector<Contact> Stepper::present_contacts()
 	return found;
 }
 
-/// What computing forces early has lengthened or set goes back, so that the loop can be saved and the step begins anew.
 Stepper::Sight Stepper::look_between_steps()
 {
-	if (body_forces_known) return { present_contacts(), wall_contacts() };
-	if (selection_due) select();  // as the step would, from the same positions
-	const auto bodies_before = scene.bodies;
-	const auto walls_before = scene.walls;
-	const auto touches_before = wall_touches;
-	const double moved_walls = moved_near_walls;
-	std::vector<double> slips(pairs.place.size());
-	for (std::uint32_t c = 0; c < slips.size(); ++c) slips[c] = pairs.place[c] ? pairs.slip(c) : 0;
+	const bool was_under_way = body_forces_known;
+	compute_body_forces();
 	const Sight sight{ present_contacts(), wall_contacts() };
-	for (std::uint32_t c = 0; c < slips.size(); ++c)
-		if (pairs.place[c]) pairs.candidates[c].slip = slips[c];
-	pairs.put_back_slips();
-	scene.bodies = bodies_before;
-	scene.walls = walls_before;
-	wall_touches = touches_before;
-	moved_near_walls = moved_walls;
-	body_forces_known = false;
+	if (!was_under_way) take_back_body_forces();  // so that the loop can be saved and the step begins anew
 	return sight;
 }
 
