@@ -68,6 +68,7 @@ struct Body {
 	static bool sweep(
 		const KernelData& data, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair)
 	{
+		if (data.damping != 0) return damped_sweep(data, begin, end, n_free, first_pair);
 		return run(data, { begin, end, n_free, first_pair, 0, false, true });
 	}
 
@@ -94,17 +95,41 @@ private:
 			const std::uint32_t done = work.moving ? data.block_pair_end[block] : work.pair_end;
 			for (; at < done; at += S::width) pack(difference, data, law, at, work.wrapped);
 			if (!work.moving) break;
-			if (block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0)
-				fold(data, block);
+			if (has_folds(data, block)) fold(data, block);
 			const std::uint32_t first = block * grains_per_block;
-			const std::uint32_t count = std::min<std::uint32_t>(grains_per_block, work.n_free - first);
-			const Two fastest = __builtin_expect(data.damping != 0, false)
-			                        ? move_damped_block(data, data.block_order[block], first, count)
-			                        : move_block(data, data.block_order[block], first, count);
+			const Two fastest =
+				move_block(data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, work.n_free - first));
 			data.travelled[block] += std::sqrt(fastest[0] + fastest[1]) * data.drift;
 			beyond |= data.travelled[block] > data.allowed[block];
 		}
 		return beyond;
+	}
+
+	/// With damping every grain is asked which way it goes. Pairs are computed by the same machine code, called block by block, so that
+	/// the code of undamped scenes stays what it is.
+	static bool damped_sweep(
+		const KernelData& data, std::uint32_t begin, std::uint32_t end, std::uint32_t n_free, std::uint32_t first_pair)
+	{
+		bool beyond = false;
+		for (std::uint32_t block = begin; block < end; ++block) {
+			if (const std::uint32_t done = data.block_pair_end[block]; done > first_pair) {
+				run(data, { 0, 1, 0, first_pair, done, false, false });
+				first_pair +=
+					(done - first_pair + S::width - 1) / S::width * S::width;  // the last pack may reach into the next block
+			}
+			if (has_folds(data, block)) fold(data, block);
+			const std::uint32_t first = block * grains_per_block;
+			const Two fastest = move_damped_block(
+				data, data.block_order[block], first, std::min<std::uint32_t>(grains_per_block, n_free - first));
+			data.travelled[block] += std::sqrt(fastest[0] + fastest[1]) * data.drift;
+			beyond |= data.travelled[block] > data.allowed[block];
+		}
+		return beyond;
+	}
+
+	static inline bool has_folds(const KernelData& data, std::uint32_t block)
+	{
+		return block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0;
 	}
 
 	static inline void pack(
@@ -187,9 +212,8 @@ private:
 		return highest;
 	}
 
-	/// The same with damping, which asks every grain which way it goes. Apart, so that the code of undamped scenes stays what it is.
-	__attribute__((noinline)) static Two move_damped_block(
-		const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count)
+	/// The same with damping.
+	static Two move_damped_block(const KernelData& data, const BlockOrder& block, std::uint32_t first, std::uint32_t count)
 	{
 		const auto* forces = static_cast<const char*>(data.forces);
 		const Two no_speed = {}, drift = data.drift - no_speed;
