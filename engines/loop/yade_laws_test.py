@@ -19,6 +19,7 @@ from yade.wrapper import (
     Bo1_Sphere_Aabb,
     ForceResetter,
     FrictMat,
+    Ig2_Facet_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom,
     InsertionSortCollider,
     InteractionLoop,
@@ -403,6 +404,11 @@ def test_constants_come_from_the_bodies_materials():
     sphere(0, 0), sphere(5, 0)
     O.materials.append(FrictMat(young=1e9, frictionAngle=1.2))  # no body has it
     engines_of("cundallStrack", damping=0.4, dampGravity=False)
+    functors = O.engines[2].geomDispatcher.functors
+    O.engines[2].geomDispatcher.functors = [
+        Ig2_Facet_Sphere_ScGeom(),
+        *functors,
+    ]  # other shapes' functors do not matter
     loop = grain_loop.use_grain_loop()
     assert (loop.law, loop.young, loop.poisson, loop.friction) == ("cundallStrack", 3e5, 0.3, math.tan(0.3))
     assert (loop.damping, loop.dampGravity) == (0.4, False)

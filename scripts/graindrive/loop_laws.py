@@ -48,7 +48,7 @@ def law_settings(contacts):
         return our_law(law, ip2)
     if name not in YADE_LAWS:
         raise UsageError(f"GrainLoop knows the laws {', '.join([*OUR_LAWS, *YADE_LAWS])}; the scene uses {name}")
-    return yade_law(law, ip2, only(contacts.geomDispatcher.functors, "Ig2_"))
+    return yade_law(law, ip2, contacts.geomDispatcher.functors)
 
 
 def only(functors, kind):
@@ -86,14 +86,19 @@ def our_law(law, ip2):
     return dict(law=OUR_LAWS[type(law).__name__], friction=friction, **constants)
 
 
-def yade_law(law, ip2, ig2):
-    """Return the arguments for one of YADE's own laws, with the constants of the one material that the bodies share."""
+def yade_law(law, ip2, geometries):
+    """Return the arguments for one of YADE's own laws, with the constants of the one material that the bodies share.
+
+    Of the Ig2_ functors that of two spheres counts: GrainLoop refuses bodies of other shapes anyway.
+    """
     expected, name, of_law, of_ip2 = YADE_LAWS[type(law).__name__]
     require_ip2(ip2, expected, law)
-    require_ip2(ig2, "Ig2_Sphere_Sphere_ScGeom", law)
+    names = [type(functor).__name__ for functor in geometries]
+    if "Ig2_Sphere_Sphere_ScGeom" not in names:
+        raise UsageError(f"{type(law).__name__} needs Ig2_Sphere_Sphere_ScGeom, got {', '.join(names) or 'none'}")
     require_defaults(law, of_law)
     require_defaults(ip2, of_ip2)
-    require_defaults(ig2, dict(avoidGranularRatcheting=True))
+    require_defaults(geometries[names.index("Ig2_Sphere_Sphere_ScGeom")], dict(avoidGranularRatcheting=True))
     material = common_material("young", "poisson", "frictionAngle")
     angle = matched(ip2, "frictAngle", material.frictionAngle)
     ratios = damping_ratios(ip2) if name == "hertzMindlin" else {}
