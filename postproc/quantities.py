@@ -57,6 +57,12 @@ QUANTITIES = {
             n_grains="free grains, without walls, base and driven body",
             dt_over_critical="time step over the critical one",
         ),
+        **of(
+            "stress",
+            lid_pressure="wiggle: weight over width of the lid that was laid, also where the key is auto",
+            pressure_at_body="wiggle: weight over width of bed and lid above the body's centre at rest",
+        ),
+        **of("d", travel="Magnus: how far the body goes in all, also where the key is auto"),
         **of("s", wall_s="wall time of the run, interrupted parts included"),
         **of("", shape="wiggle: the key"),
         **of(

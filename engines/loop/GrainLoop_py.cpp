@@ -131,9 +131,9 @@ void bind_loop()
 		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
 	cls.def("contacts", contacts,
 		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip of i along z x n [m] ([N] with cundallStrack "
-	    "and\n"
+		"and\n"
 		"hertzMindlin, which remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to "
-	    "j,\n"
+		"j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).");
 	cls.def("presentContacts", present_contacts,
 		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
