@@ -34,8 +34,8 @@ def scene():
 def pressed_clump():
     """A driven clump between two frozen disks that press on it unevenly; return its id."""
     ident, _ = disks.clump([(-0.3, 0), (0.3, 0)], at=(0, 0))
-    disks.disk(-0.45, 0.72, frozen=True)
-    disks.disk(1.05, 0.1, frozen=True)
+    disks.disk(-0.45, 0.77, frozen=True)
+    disks.disk(1.07, 0.12, frozen=True)
     disks.disk(9, 9)
     return ident
 
@@ -96,7 +96,7 @@ def test_a_driven_box_feels_its_contacts_about_its_centre():
         InteractionLoop(
             [Ig2_Sphere_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
             [Ip2_FrictMat_FrictMat_FrictPhys()],
-            [Law2_ScGeom_FrictPhys_CundallStrack()],
+            [Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False)],
         ),
         drive,
         NewtonIntegrator(damping=0),

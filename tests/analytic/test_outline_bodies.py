@@ -38,7 +38,7 @@ def put(body, loop, blocked="zXY", between=(), gravity=0.0, others=()):
     id_ = scene.add_intruder(body, *AT, blocked=blocked)
     for x, y, radius in others:
         scene.add_disks([x], [y], [radius], 1.0, "xyzXYZ")
-    scene.add_disks([50.0], [50.0], [0.25], 1.0, "xyzXYZ")
+    scene.add_disks([50.0], [-20.0], [0.25], 1.0, "xyzXYZ")
     O.dt = DT
     engines_between = [make(id_) for make in between]
     scene.run_on(loop, HertzHistoryMaterial(2e4, 2e4, 0.0, 0.0, 0.0, 1.0), gravity=gravity, between=engines_between)

@@ -20,6 +20,6 @@ def way_of(ident, steps):
     """Return the body's positions after each of so many steps, shape (steps, 3)."""
     rows = []
     for _ in range(steps):
-        disks.run(1)
+        O.step()  # O.run waits by the twentieth of a second
         rows.append(O.bodies[ident].state.pos)
     return np.array(rows)
