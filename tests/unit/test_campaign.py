@@ -199,13 +199,18 @@ def test_a_damaged_finished_run_is_named_set_aside_and_planned_again(plan, tmp_p
         damaged = tmp_path / "out/runs" / found.runs[0].name
         (damaged / file).write_bytes((damaged / file).read_bytes()[:-10])
         (line,) = execution.set_damaged_aside(tmp_path / "out", found)
-        assert f"{damaged / file} cannot be read" in line and f"it is kept as {damaged.name}.damaged and made again" in line
+        assert (
+            f"{damaged / file} cannot be read" in line
+            and f"it is kept as {damaged.name}.damaged and made again" in line
+        )
         assert execution.missing(tmp_path / "out", found) == found.runs[:1]
         assert execution.set_damaged_aside(tmp_path / "out", found) == []
 
 
 def test_a_run_that_cannot_be_read_leaves_a_report_with_the_others(tmp_path, capsys):
-    made_up_runs.make_campaign(tmp_path / "c", made_up_runs.MadeUpMagnus(), {"speed": dict(v0=[0.5, 1, 2], seed=[1, 2])})
+    made_up_runs.make_campaign(
+        tmp_path / "c", made_up_runs.MadeUpMagnus(), {"speed": dict(v0=[0.5, 1, 2], seed=[1, 2])}
+    )
     first = sorted((tmp_path / "c/runs").iterdir())[0]
     (first / "summary.json").write_text("{")
     write_report(tmp_path / "c")
