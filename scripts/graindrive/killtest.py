@@ -4,8 +4,8 @@ usage: scripts/killtest [--kills N] [--study NAME] [--seed S] [--work DIR]
 
 Every trial starts a study, kills it (SIGKILL) at a random time of its work, in half of the cases kills the resumed run within
 the first second of its work, perhaps again, and then lets it end. A line a kill says what was done; the last line counts lost
-rows, differing bits of series, frames, fields and summary (times apart), tracebacks, and folders that are wedged: another exit code
-than 0, or something left beside the result. The exit code is 1 if any of them is not 0, and the trial's folder then stays.
+rows, differing bits of series, frames, fields and summary (times apart), tracebacks, and folders that are wedged: another exit
+code than 0, or something left beside the result. The exit code is 1 if any of them is not 0, and the trial's folder then stays.
 """
 
 import argparse
