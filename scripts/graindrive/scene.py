@@ -157,10 +157,11 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
 
     GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius; it takes as many
     `threads` as YADE was started with, unless they are given, but no more than pay: one for every 5,000 grains or so.
-    Results have the same bits for any number.
+    Results have the same bits for any number. Raises UsageError where two disks could touch through two periodic images.
     """
     from yade import O
 
+    require_one_image()
     yade_loop(material, gravity, between)
     if loop == "grain":
         grain_loop.use_grain_loop(
@@ -169,6 +170,21 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
             threads=threads or min(O.numThreads, 1 + len(O.bodies) // GRAINS_PER_THREAD),
             largestOverlap=largest_overlap,
             label="loop",
+        )
+
+
+def require_one_image():
+    """Raise UsageError if the cell is so short that its two largest disks could touch through two images at once.
+
+    Either loop meets a pair through its nearest image alone, so the second contact would be lost.
+    """
+    from yade import O
+
+    radii = np.sort(engines.body_table(O._sceneObj)["radius"])
+    if O.periodic and len(radii) > 1 and 2 * (radii[-1] + radii[-2]) > O.cell.size[0]:
+        raise UsageError(
+            f"the period in x must be at least {2 * (radii[-1] + radii[-2]):g}, got {O.cell.size[0]:g}: disks of radius"
+            f" {radii[-1]:g} and {radii[-2]:g} could touch through two of their images; make it longer or the disks smaller"
         )
 
 

@@ -1,4 +1,4 @@
-"""Scenes as checkpoints keep them: what YADE writes goes through memory, not through a disk that may be full."""
+"""Scenes: what YADE writes of them goes through memory, and what no loop can compute is refused."""
 
 import gzip
 import tempfile
@@ -9,6 +9,10 @@ import pytest
 pytest.importorskip("yade")
 
 from graindrive import scene  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
+from graindrive.material import HertzHistoryMaterial  # noqa: E402
+
+MATERIAL = HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, 0.1, 1.0)
 
 
 def test_yades_scene_is_saved_through_memory(tmp_path, monkeypatch):
@@ -26,3 +30,18 @@ def test_yades_scene_is_saved_through_memory(tmp_path, monkeypatch):
     O.reset()
     assert gzip.decompress(saved) == gzip.decompress((tmp_path / "expected.yade.gz").read_bytes())
     assert (tmp_path / scene.YADES_FILE).is_symlink(), "O.save never returns from a disk that is full"
+
+
+@pytest.mark.parametrize("loop", ["grain", "yade"])
+@pytest.mark.parametrize("width, fits", [(4, False), (4.1, True)])
+def test_a_disk_that_another_could_touch_through_two_images_is_refused(loop, width, fits):
+    from yade import O
+
+    scene.start(width, 10)
+    scene.add_disks([width / 2, 0.0], [1, 1], [1.5, 0.51], 1.0)
+    O.dt = 1e-6
+    if fits:
+        scene.run_on(loop, MATERIAL, 0.0)
+        return
+    with pytest.raises(UsageError, match="the period in x must be at least 4.02, got 4"):
+        scene.run_on(loop, MATERIAL, 0.0)
