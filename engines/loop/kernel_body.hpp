@@ -14,43 +14,61 @@
 namespace graindrive::loop {
 namespace {
 
+/// What the law needs to know of a pack of pairs, and where the pack stands.
+template <class S>
+struct PackGeometry {
+	S n_x, n_y, overlap, normal_velocity, tangential_velocity;
+	typename S::Mask touching;
+	std::uint32_t at;
+};
+
 template <class S>
 struct PackForces {
 	S x, y, friction, normal, slip;
 };
 
-/// One pack of pairs: columns of row differences and sums -> forces on the owners. Flowing scenes list many pairs that do not
-/// touch; a pack without a touching one costs half. Without friction the compiler drops all that only the tangential force needs.
-template <bool Friction, class Law, class S>
-inline PackForces<S> pack_forces(
-	const Law& law, const S column[6], const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
+/// Columns of row differences and sums -> geometry of the pairs that touch; false if none does.
+template <class Law, class S>
+inline bool pack_geometry(const S column[6], PackGeometry<S>& contact)
 {
 	const S &dx = column[0], &dy = column[1], &dvx = column[2], &dvy = column[3], &reach = column[4], &surface_speed = column[5];
-	const S zero(0), square = dx * dx + dy * dy;
-	const auto touching = square < reach * reach;
-	if (!any(touching)) return { zero, zero, zero, zero, zero };
+	const S square = dx * dx + dy * dy;
+	contact.touching = square < reach * reach;
+	if (!any(contact.touching)) return false;
 	const S distance = sqrt(square);
 	const S inverse = S(1) / distance;
 	const S n_x = dx * inverse, n_y = dy * inverse;
-	const S overlap = reach - distance;
-
-	laws::Kinematics<S, S> contact;
-	contact.overlap = max(overlap, zero);
+	contact.n_x = n_x;
+	contact.n_y = n_y;
+	contact.overlap = max(reach - distance, S(0));
 	contact.normal_velocity = dvx * n_x + dvy * n_y;
 	if constexpr (Law::acts_at_contact_point)
 		contact.tangential_velocity = surface_speed + (reach * inverse) * (dvx * n_y - dvy * n_x);
 	else
 		contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
+	return true;
+}
+
+/// Forces on the owners. Without friction the compiler drops all that only the tangential force needs.
+template <bool Friction, class Law, class S>
+inline PackForces<S> pack_forces(
+	const Law& law, const PackGeometry<S>& pack, const S& effective_radius, const S& effective_mass, const S& slip, const S& dt)
+{
+	laws::Kinematics<S, S> contact;
+	contact.overlap = pack.overlap;
+	contact.normal_velocity = pack.normal_velocity;
+	contact.tangential_velocity = pack.tangential_velocity;
 	contact.effective_radius = effective_radius;
 	contact.effective_mass = effective_mass;
 	contact.dt = dt;
 
+	const S zero(0);
 	const auto response = law(contact, slip);
-	const S normal = select(touching, response.normal, zero);
-	if constexpr (!Friction) return { -(normal * n_x), -(normal * n_y), zero, normal, zero };
-	const S friction = select(touching, response.tangential, zero);
-	PackForces<S> forces{ -(normal * n_x) - friction * n_y, friction * n_x - normal * n_y, friction, normal,
-		select(touching, response.slip, zero) };
+	const S normal = select(pack.touching, response.normal, zero);
+	if constexpr (!Friction) return { -(normal * pack.n_x), -(normal * pack.n_y), zero, normal, zero };
+	const S friction = select(pack.touching, response.tangential, zero);
+	PackForces<S> forces{ -(normal * pack.n_x) - friction * pack.n_y, friction * pack.n_x - normal * pack.n_y, friction, normal,
+		select(pack.touching, response.slip, zero) };
 	if constexpr (Law::acts_at_contact_point) forces.normal = (contact.overlap * S(0.5)) * friction;
 	return forces;
 }
@@ -93,7 +111,7 @@ private:
 		std::uint32_t at = work.pair_begin;
 		for (std::uint32_t block = work.block_begin; block < work.block_end; ++block) {
 			const std::uint32_t done = work.moving ? data.block_pair_end[block] : work.pair_end;
-			for (; at < done; at += S::width) pack(difference, data, law, at, work.wrapped);
+			while (at < done) at = packs(difference, data, law, at, done, work.wrapped);
 			if (!work.moving) break;
 			if (has_folds(data, block)) fold(data, block);
 			const std::uint32_t first = block * grains_per_block;
@@ -132,20 +150,40 @@ private:
 		return block > 0 ? data.block_fold_end[block] > data.block_fold_end[block - 1] : data.block_fold_end[0] > 0;
 	}
 
-	static inline void pack(
-		const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at, bool wrapped)
+	/// Forces of the pairs from `at` on, in two stages: the roots and divisions of many packs overlap, the law's wait for them no more.
+	/// @return where the next pack begins
+	static inline std::uint32_t packs(const RowDifference& difference, const KernelData& data, const Law& law, std::uint32_t at,
+		std::uint32_t end, bool wrapped)
 	{
-		S column[6];
-		asm volatile("" : "+r"(wrapped));  // or the compiler makes a loop for either, with a copy of the law in each
-		if (__builtin_expect(wrapped, false))
-			Turn::template columns<true>(difference, data.links + at, column);
-		else
-			Turn::template columns<false>(difference, data.links + at, column);
-		P* slips = static_cast<P*>(data.slips) + at;
-		const S radius = S::load(static_cast<const P*>(data.effective_radii) + at),
-				mass = S::load(static_cast<const P*>(data.effective_masses) + at);
-		PackForces<S> f = pack_forces<Friction>(law, column, radius, mass, Friction ? S::load(slips) : S(P(0)), S(P(data.dt)));
-		if constexpr (Friction) f.slip.store(slips);
+		constexpr int most = 16;
+		PackGeometry<S> touching[most];
+		int n = 0;
+		for (int k = 0; k < most && at < end; ++k, at += S::width) {
+			S column[6];
+			asm volatile("" : "+r"(wrapped));  // or the compiler makes a loop for either, with a copy of the law in each
+			if (__builtin_expect(wrapped, false))
+				Turn::template columns<true>(difference, data.links + at, column);
+			else
+				Turn::template columns<false>(difference, data.links + at, column);
+			touching[n].at = at;
+			if (pack_geometry<Law>(column, touching[n]))
+				++n;
+			else
+				put(data, at, { S(0), S(0), S(0), S(0), S(0) });
+		}
+		for (int k = 0; k < n; ++k) {
+			const std::uint32_t place = touching[k].at;
+			const S radius = S::load(static_cast<const P*>(data.effective_radii) + place),
+					mass = S::load(static_cast<const P*>(data.effective_masses) + place),
+					slip = Friction ? S::load(static_cast<const P*>(data.slips) + place) : S(0);
+			put(data, place, pack_forces<Friction>(law, touching[k], radius, mass, slip, S(P(data.dt))));
+		}
+		return at;
+	}
+
+	static inline void put(const KernelData& data, std::uint32_t at, const PackForces<S>& f)
+	{
+		if constexpr (Friction) f.slip.store(static_cast<P*>(data.slips) + at);
 		Turn::store(f.x, f.y, f.friction, f.normal, static_cast<PairForce<P>*>(data.forces) + at);
 	}
 

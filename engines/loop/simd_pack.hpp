@@ -67,143 +67,100 @@ typename VectorOf<T, W>::type lesser(typename VectorOf<T, W>::type a, typename V
 	return a < b ? a : b;
 }
 
-template <class T, int W, int N>
-struct PackMask;
+template <class T, int W>
+struct PackMask {
+	using Vector = typename VectorOf<T, W>::type;
+	decltype(Vector{} < Vector{}) m;
+};
 
-/// N vectors of W numbers side by side: N = 2 gives the processor two independent chains of operations to overlap.
-template <class T, int W, int N>
+template <class T, int W>
 struct Pack {
 	using Vector = typename VectorOf<T, W>::type;
-	using Mask = PackMask<T, W, N>;
-	static constexpr int lanes = W, parts = N, width = W * N;
+	using Mask = PackMask<T, W>;
+	static constexpr int width = W;
 
-	Vector v[N];
+	Vector v;
 
 	Pack() = default;
-	Pack(T number)
-	{
-		for (int n = 0; n < N; ++n) v[n] = number - Vector{};
-	}
+	Pack(T number) : v(number - Vector{}) {}
 
+	static Pack of(Vector vector)
+	{
+		Pack pack;
+		pack.v = vector;
+		return pack;
+	}
 	static Pack load(const T* from)
 	{
 		Pack loaded;
-		for (int n = 0; n < N; ++n) std::memcpy(&loaded.v[n], from + n * W, sizeof(Vector));
+		std::memcpy(&loaded.v, from, sizeof(Vector));
 		return loaded;
 	}
-	void store(T* to) const
-	{
-		for (int n = 0; n < N; ++n) std::memcpy(to + n * W, &v[n], sizeof(Vector));
-	}
+	void store(T* to) const { std::memcpy(to, &v, sizeof(Vector)); }
 
-	template <class Operation>
-	static Pack each(const Operation& of_part)
-	{
-		Pack result;
-		for (int n = 0; n < N; ++n) result.v[n] = of_part(n);
-		return result;
-	}
-
-	friend Pack operator+(const Pack& a, const Pack& b)
-	{
-		return each([&](int n) { return a.v[n] + b.v[n]; });
-	}
-	friend Pack operator-(const Pack& a, const Pack& b)
-	{
-		return each([&](int n) { return a.v[n] - b.v[n]; });
-	}
-	friend Pack operator*(const Pack& a, const Pack& b)
-	{
-		return each([&](int n) { return a.v[n] * b.v[n]; });
-	}
-	friend Pack operator/(const Pack& a, const Pack& b)
-	{
-		return each([&](int n) { return a.v[n] / b.v[n]; });
-	}
-	friend Pack operator-(const Pack& a)
-	{
-		return each([&](int n) { return -a.v[n]; });
-	}
-	friend Mask operator<(const Pack& a, const Pack& b)
-	{
-		return Mask::each([&](int n) { return a.v[n] < b.v[n]; });
-	}
-	friend Mask operator>(const Pack& a, const Pack& b)
-	{
-		return Mask::each([&](int n) { return a.v[n] > b.v[n]; });
-	}
-};
-
-template <class T, int W, int N>
-struct PackMask {
-	using Vector = typename VectorOf<T, W>::type;
-	decltype(Vector{} < Vector{}) m[N];
-
-	template <class Comparison>
-	static PackMask each(const Comparison& of_part)
-	{
-		PackMask result;
-		for (int n = 0; n < N; ++n) result.m[n] = of_part(n);
-		return result;
-	}
+	friend Pack operator+(const Pack& a, const Pack& b) { return of(a.v + b.v); }
+	friend Pack operator-(const Pack& a, const Pack& b) { return of(a.v - b.v); }
+	friend Pack operator*(const Pack& a, const Pack& b) { return of(a.v * b.v); }
+	friend Pack operator/(const Pack& a, const Pack& b) { return of(a.v / b.v); }
+	friend Pack operator-(const Pack& a) { return of(-a.v); }
+	friend Mask operator<(const Pack& a, const Pack& b) { return { a.v < b.v }; }
+	friend Mask operator>(const Pack& a, const Pack& b) { return { a.v > b.v }; }
 };
 
 /// True if it holds for any number of the pack.
-template <class T, int W, int N>
-bool any(const PackMask<T, W, N>& mask)
+template <class T, int W>
+bool any(const PackMask<T, W>& mask)
 {
-	auto joined = mask.m[0];
-	for (int n = 1; n < N; ++n) joined |= mask.m[n];
 #ifdef __AVX512F__
-	if constexpr (W * sizeof(T) == 64) return _mm512_test_epi64_mask((__m512i)joined, (__m512i)joined) != 0;
+	if constexpr (W * sizeof(T) == 64) return _mm512_test_epi64_mask((__m512i)mask.m, (__m512i)mask.m) != 0;
 #endif
 #ifdef __AVX2__
-	if constexpr (W * sizeof(T) == 32) return !_mm256_testz_si256((__m256i)joined, (__m256i)joined);
+	if constexpr (W * sizeof(T) == 32) return !_mm256_testz_si256((__m256i)mask.m, (__m256i)mask.m);
 #endif
 	for (int lane = 0; lane < W; ++lane)
-		if (joined[lane]) return true;
+		if (mask.m[lane]) return true;
 	return false;
 }
 
-template <class T, int W, int N>
-Pack<T, W, N> select(const PackMask<T, W, N>& where, const Pack<T, W, N>& yes, const Pack<T, W, N>& no)
+template <class T, int W>
+Pack<T, W> select(const PackMask<T, W>& where, const Pack<T, W>& yes, const Pack<T, W>& no)
 {
-	return Pack<T, W, N>::each([&](int n) { return where.m[n] ? yes.v[n] : no.v[n]; });
+	return Pack<T, W>::of(where.m ? yes.v : no.v);
 }
 
 // min and max as the processor has them: the second operand where either is not a number.
-template <class T, int W, int N>
-Pack<T, W, N> max(const Pack<T, W, N>& a, const Pack<T, W, N>& b)
+template <class T, int W>
+Pack<T, W> max(const Pack<T, W>& a, const Pack<T, W>& b)
 {
-	return Pack<T, W, N>::each([&](int n) { return greater<T, W>(a.v[n], b.v[n]); });
+	return Pack<T, W>::of(greater<T, W>(a.v, b.v));
 }
 
-template <class T, int W, int N>
-Pack<T, W, N> min(const Pack<T, W, N>& a, const Pack<T, W, N>& b)
+template <class T, int W>
+Pack<T, W> min(const Pack<T, W>& a, const Pack<T, W>& b)
 {
-	return Pack<T, W, N>::each([&](int n) { return lesser<T, W>(a.v[n], b.v[n]); });
+	return Pack<T, W>::of(lesser<T, W>(a.v, b.v));
 }
 
 /// |a|, by clearing the sign bit.
-template <class T, int W, int N>
-Pack<T, W, N> abs(const Pack<T, W, N>& a)
+template <class T, int W>
+Pack<T, W> abs(const Pack<T, W>& a)
 {
 	using Bits = typename VectorOf<std::conditional_t<sizeof(T) == 8, long long, int>, W>::type;
 	const Bits all_but_sign = (sizeof(T) == 8 ? 0x7fffffffffffffffLL : 0x7fffffffLL) - Bits{};
-	return Pack<T, W, N>::each([&](int n) { return (typename VectorOf<T, W>::type)((Bits)a.v[n] & all_but_sign); });
+	return Pack<T, W>::of((typename VectorOf<T, W>::type)((Bits)a.v & all_but_sign));
 }
 
 /// The contact laws' cut, as a clamp: two operations instead of five.
-template <class T, int W, int N>
-Truncated<Pack<T, W, N>, PackMask<T, W, N>> truncated(const Pack<T, W, N>& trial, const Pack<T, W, N>& limit)
+template <class T, int W>
+Truncated<Pack<T, W>, PackMask<T, W>> truncated(const Pack<T, W>& trial, const Pack<T, W>& limit)
 {
 	return { max(min(trial, limit), -limit), abs(trial) > limit };
 }
 
-template <class T, int W, int N>
-Pack<T, W, N> sqrt(const Pack<T, W, N>& a)
+template <class T, int W>
+Pack<T, W> sqrt(const Pack<T, W>& a)
 {
-	return Pack<T, W, N>::each([&](int n) { return square_root<T, W>(a.v[n]); });
+	return Pack<T, W>::of(square_root<T, W>(a.v));
 }
 
 }  // namespace graindrive::loop

@@ -189,28 +189,6 @@ TEST(Stepper, bounces_without_damping_keep_the_energy)
 	EXPECT_NEAR(highest, before, 1e-4 * before);
 }
 
-TEST(Stepper, processors_agree)
-{
-	const Scene scene = crowd(12, 8);
-	Stepper best(scene);
-	best.step(300);
-	for (const char* processor : { "avx2", "portable" }) {
-		setenv("GRAINDRIVE_PROCESSOR", processor, 1);
-		try {
-			Stepper other(scene);
-			other.step(300);
-			EXPECT_LT(largest_difference(
-						  scene, [&](std::size_t i) { return best.grain(i); }, [&](std::size_t i) { return other.grain(i); }),
-				grown_round_off)
-				<< processor;
-		} catch (const std::invalid_argument&) {  // this machine has no AVX2
-		}
-	}
-	setenv("GRAINDRIVE_PROCESSOR", "abacus", 1);
-	EXPECT_THROW(Stepper{ scene }, std::invalid_argument);
-	unsetenv("GRAINDRIVE_PROCESSOR");
-}
-
 TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain_is)
 {
 	const auto far_from_near = [](double shift) {
