@@ -1,23 +1,41 @@
-/// Threads wait by looking often for a short while, then by yielding: quick on a free machine, polite on a crowded one.
+/// Threads wait by looking for a short while, then by sleeping: quick on a free machine, polite on a crowded one.
 #include "engines/loop/thread_team.hpp"
+
+#include <chrono>
 
 namespace graindrive::loop {
 
-namespace {
-
-template <class Done>
-void wait_until(const Done& done)
+void Epoch::advance()
 {
-	constexpr int looks_before_yielding = 4000;  // some 20 microseconds
-	for (int looks = 0; !done(); ++looks) {
-		if (looks < looks_before_yielding)
-			__builtin_ia32_pause();
-		else
-			std::this_thread::yield();
+	++count;
+	if (sleepers == 0) return;  // whoever counts itself among them from now on sees the new count
+	{
+		const std::lock_guard<std::mutex> lock(mutex);  // whoever has seen the old one under the lock is asleep
 	}
+	advanced.notify_all();
 }
 
-}  // namespace
+void Epoch::wait_past(unsigned seen)
+{
+	if (seen_while_looking(seen)) return;
+	std::unique_lock<std::mutex> lock(mutex);
+	++sleepers;
+	advanced.wait(lock, [&] { return count != seen; });
+	--sleepers;
+}
+
+bool Epoch::seen_while_looking(unsigned seen) const
+{
+	using Clock = std::chrono::steady_clock;
+	constexpr auto patience = std::chrono::microseconds(50);  // to fall asleep and be woken takes as long
+	constexpr int looks_at_once = 32;                         // the clock costs as much as a look
+	for (const auto end = Clock::now() + patience; Clock::now() < end;)
+		for (int looks = 0; looks < looks_at_once; ++looks) {
+			if (count.load(std::memory_order_acquire) != seen) return true;
+			__builtin_ia32_pause();
+		}
+	return false;
+}
 
 ThreadTeam::ThreadTeam(int size) : n_threads(size)
 {
@@ -26,39 +44,30 @@ ThreadTeam::ThreadTeam(int size) : n_threads(size)
 
 ThreadTeam::~ThreadTeam()
 {
-	{
-		const std::lock_guard<std::mutex> lock(mutex);
-		leaving = true;
-		++round;
-	}
-	wake.notify_all();
+	begin(nullptr);
 	for (std::thread& helper : helpers) helper.join();
+}
+
+void ThreadTeam::begin(const std::function<void(int)>* work)
+{
+	task = work;
+	round.advance();
 }
 
 void ThreadTeam::run(const std::function<void(int)>& work)
 {
 	if (n_threads == 1) return work(0);
-	{
-		const std::lock_guard<std::mutex> lock(mutex);
-		task = &work;
-		++round;
-	}
-	wake.notify_all();
+	begin(&work);
 	work(0);
 	barrier();
 }
 
 void ThreadTeam::help(int rank)
 {
-	for (unsigned seen = 0;;) {
-		for (int looks = 0; looks < 4000 && round.load(std::memory_order_acquire) == seen; ++looks) __builtin_ia32_pause();
-		std::unique_lock<std::mutex> lock(mutex);
-		wake.wait(lock, [&] { return round.load() != seen; });
-		seen = round.load();
-		if (leaving) return;
-		const auto* now = task;
-		lock.unlock();
-		(*now)(rank);
+	for (unsigned seen = 0;; ++seen) {
+		round.wait_past(seen);
+		if (!task) return;
+		(*task)(rank);
 		barrier();
 	}
 }
@@ -66,13 +75,10 @@ void ThreadTeam::help(int rank)
 void ThreadTeam::barrier()
 {
 	if (n_threads == 1) return;
-	const unsigned mine = generation.load(std::memory_order_acquire);
-	if (arrived.fetch_add(1, std::memory_order_acq_rel) + 1 == n_threads) {
-		arrived.store(0, std::memory_order_relaxed);
-		generation.fetch_add(1, std::memory_order_acq_rel);
-		return;
-	}
-	wait_until([&] { return generation.load(std::memory_order_acquire) != mine; });
+	const unsigned mine = passed.now();
+	if (arrived.fetch_add(1) + 1 < n_threads) return passed.wait_past(mine);
+	arrived = 0;
+	passed.advance();
 }
 
 }  // namespace graindrive::loop

@@ -9,6 +9,24 @@
 
 namespace graindrive::loop {
 
+/// A counter that threads wait on: they look at it for a short while and then sleep, so that a thread whose core was taken away can run on
+/// the core of one that waits for it.
+class Epoch {
+public:
+	unsigned now() const { return count.load(); }
+	void advance();
+	void wait_past(
+		unsigned seen);  ///< returns once the counter is no longer `seen`; what was written before `advance` is seen after
+
+private:
+	std::atomic<unsigned> count{ 0 };
+	std::atomic<int> sleepers{ 0 };
+	std::mutex mutex;
+	std::condition_variable advanced;
+
+	bool seen_while_looking(unsigned seen) const;
+};
+
 class ThreadTeam {
 public:
 	explicit ThreadTeam(int size);
@@ -24,14 +42,12 @@ public:
 private:
 	const int n_threads;
 	std::vector<std::thread> helpers;
-	std::mutex mutex;
-	std::condition_variable wake;
-	std::atomic<unsigned> round{ 0 };
-	const std::function<void(int)>* task = nullptr;
-	bool leaving = false;
+	const std::function<void(int)>* task = nullptr;  // none: the team ends
+	alignas(64) Epoch round;
 	alignas(64) std::atomic<int> arrived{ 0 };
-	alignas(64) std::atomic<unsigned> generation{ 0 };
+	alignas(64) Epoch passed;
 
+	void begin(const std::function<void(int)>* work);
 	void help(int rank);
 };
 
