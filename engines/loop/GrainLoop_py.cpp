@@ -104,16 +104,13 @@ void require_scene(GrainLoop& loop)
 }
 long searches(GrainLoop& loop) { return running(loop).searches_done(); }
 
-std::string processor(GrainLoop& loop)
+std::string processor(GrainLoop& loop) { return name_of(running(loop).kernel_in_use().processor); }
+
+py::list processors()
 {
-	switch (running(loop).kernel_in_use().processor) {
-	case loop::Processor::avx512:
-		return "avx512";
-	case loop::Processor::avx2:
-		return "avx2";
-	default:
-		return "portable";
-	}
+	py::list names;
+	for (loop::Processor each : loop::processors_supported()) names.append(loop::name_of(each));
+	return names;
 }
 
 }  // namespace
@@ -153,6 +150,10 @@ void bind_loop()
 	cls.add_property("kineticEnergy", kinetic_energy, "of the free disks, translation and rotation [J]");
 	cls.add_property("searches", searches, "searches for neighbours so far");
 	cls.add_property("processor", processor, "instructions in use: 'avx512', 'avx2' or 'portable'");
+	py::def("processors", processors,
+		"Kernels of GrainLoop that this processor runs, the best first: of 'avx512', 'avx2', 'portable'. The environment "
+		"variable\n"
+		"GRAINDRIVE_PROCESSOR chooses one.");
 }
 
 }  // namespace graindrive

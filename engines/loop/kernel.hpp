@@ -1,6 +1,8 @@
 /// The two inner functions of the loop, pair forces and motion, as pointers: one set for each processor generation, law and precision.
 #pragma once
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "engines/laws/yade_laws.hpp"
 #include "engines/loop/grain_row.hpp"
@@ -83,6 +85,9 @@ struct KernelChoice {
 Kernel kernel_for_avx512(const KernelChoice&);
 Kernel kernel_for_avx2(const KernelChoice&);
 Kernel kernel_portable(const KernelChoice&);
+
+std::string name_of(Processor);                 ///< as in GRAINDRIVE_PROCESSOR
+std::vector<Processor> processors_supported();  ///< those whose kernels run here, the best first
 
 /// The best kernel this processor can run. The environment variable GRAINDRIVE_PROCESSOR (avx512, avx2, portable) asks for less.
 /// @throws std::invalid_argument for an unknown name or one that this processor cannot run

@@ -1,11 +1,13 @@
 """Times GrainLoop against LAMMPS, LIGGGHTS and YADE's loop, alternating, and prints median ratios.
 
-usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N]
+usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
 
-  --json        a list of {scene, law, precision, threads, peer, ours, theirs, ratio}, rates in particle-steps/s
+  --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
   --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150; without it all of them, in that order
   --quick       bed10k only, short runs: about a minute once its bed is in the cache
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
+  --kernel NAME instructions that GrainLoop runs on: avx512, avx2 or portable; by default the best of this processor
+  --lammps COMMAND  another LAMMPS than Debian's `lmp`, such as one built for this processor
 
 One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
 whose kinetic energies differ after the first portion gets no ratio.
@@ -15,6 +17,7 @@ import argparse
 import functools
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -22,6 +25,7 @@ import tempfile
 
 import numpy as np
 
+from .. import engines
 from . import lammps, liggghts
 from .scenes import FREE, SCENES, scene, with_restitution
 
@@ -69,14 +73,15 @@ def differs(ours, theirs, tolerance):
     )
 
 
-def row(name, a_scene, threads, peer, ours, theirs, precision="double"):
-    """Return one line of the table from lists of rates taken alternately."""
+def row(name, a_scene, threads, kernel, peer, ours, theirs, precision="double"):
+    """Return one line of the table from lists of rates taken alternately; `kernel` is what a worker said of itself."""
     ratios = [a / b for a, b in zip(ours, theirs)]
     return dict(
         scene=name,
         law=str(a_scene["law"]),
         precision=precision,
         threads=threads,
+        kernel=kernel,
         peer=peer,
         ours=statistics.median(ours),
         theirs=statistics.median(theirs),
@@ -100,7 +105,8 @@ def against(peer_name, run_peer, name, a_scene, path, threads, rounds, steps):
             theirs.append(rate(peer, particles, steps, threads))
     finally:
         worker.close()
-    return row(name, a_scene, threads, peer_name if threads == 1 else f"{peer_name}, {threads} ranks", ours, theirs)
+    against_whom = peer_name if threads == 1 else f"{peer_name}, {threads} ranks"
+    return row(name, a_scene, threads, own["processor"], against_whom, ours, theirs)
 
 
 def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
@@ -142,7 +148,7 @@ def against_yade(name, a_scene, path, rounds, steps):
     finally:
         for worker in (twin, own, peer):
             worker.close()
-    return row(name, a_scene, 1, "YADE's loop", ours, theirs)
+    return row(name, a_scene, 1, fast["processor"], "YADE's loop", ours, theirs)
 
 
 def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="double", **settings):
@@ -150,13 +156,11 @@ def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="doubl
     other, plain = Ours(path, "grain", precision=precision, **settings), Ours(path, "grain")
     particles = len(a_scene["x"])
     try:
-        pairs = [
-            (rate(other.run(steps), particles, steps, 1), rate(plain.run(steps), particles, steps, 1))
-            for _ in range(rounds)
-        ]
+        answers = [(other.run(steps), plain.run(steps)) for _ in range(rounds)]
     finally:
         other.close(), plain.close()
-    return row(name, a_scene, 1, peer, *zip(*pairs), precision=precision)
+    ours, theirs = ([rate(answer, particles, steps, 1) for answer in side] for side in zip(*answers))
+    return row(name, a_scene, 1, answers[0][0]["processor"], peer, ours, theirs, precision=precision)
 
 
 def against_small_bed(name, a_scene, path, rounds, steps, folder):
@@ -165,16 +169,12 @@ def against_small_bed(name, a_scene, path, rounds, steps, folder):
     small_path = save(small, folder, "small.npz")
     large, little = Ours(path, "grain"), Ours(small_path, "grain")
     try:
-        pairs = [
-            (
-                rate(large.run(steps), len(a_scene["x"]), steps, 1),
-                rate(little.run(6 * steps), len(small["x"]), 6 * steps, 1),
-            )
-            for _ in range(rounds)
-        ]
+        answers = [(large.run(steps), little.run(6 * steps)) for _ in range(rounds)]
     finally:
         large.close(), little.close()
-    return row(name, a_scene, 1, "own bed10k", *zip(*pairs))
+    ours = [rate(answer, len(a_scene["x"]), steps, 1) for answer, _ in answers]
+    theirs = [rate(answer, len(small["x"]), 6 * steps, 1) for _, answer in answers]
+    return row(name, a_scene, 1, answers[0][0]["processor"], "own bed10k", ours, theirs)
 
 
 def save(a_scene, folder, file_name):
@@ -205,7 +205,7 @@ def measure(name, quick, threads):
 
 def print_row(entry):
     """Print one line of the table."""
-    columns = "{scene:14} {law:14} {precision:7} {threads:7d} {peer:16} {ours:8.1f} {theirs:8.2f} {ratio:7.2f}"
+    columns = "{scene:14} {law:16} {precision:7} {threads:7d} {kernel:8} {peer:16} {ours:8.1f} {theirs:8.2f} {ratio:7.2f}"
     print(columns.format(**{**entry, "ours": entry["ours"] / 1e6, "theirs": entry["theirs"] / 1e6}), flush=True)
 
 
@@ -218,10 +218,22 @@ def main(arguments=None):
     parser.add_argument("--scene", choices=sorted(SCENES))
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--kernel", choices=("avx512", "avx2", "portable"))
+    parser.add_argument("--lammps", metavar="COMMAND")
     chosen = parser.parse_args(arguments)
+    if chosen.threads < 1:
+        parser.error(f"--threads must be at least 1, got {chosen.threads}")
+    if chosen.kernel:
+        if chosen.kernel not in engines.processors():
+            parser.error(f"--kernel {chosen.kernel}: this processor runs {', '.join(engines.processors())} only")
+        os.environ["GRAINDRIVE_PROCESSOR"] = chosen.kernel  # the workers inherit it
+    if chosen.lammps:
+        if not shutil.which(chosen.lammps):
+            parser.error(f"--lammps {chosen.lammps}: no such program")
+        lammps.command = os.path.abspath(shutil.which(chosen.lammps))
     names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else list(SCENES)
     if not chosen.json:
-        print("scene          law            precis. threads peer             ours M/s   theirs   ratio", flush=True)
+        print("scene          law              precis. threads kernel   peer             ours M/s   theirs   ratio", flush=True)
     rows = []
     for name in names:
         for entry in measure(name, chosen.quick, chosen.threads):
