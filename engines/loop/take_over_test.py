@@ -49,6 +49,18 @@ OBSTACLES = {
         lambda: setattr(O, "engines", [wrapper.VTKRecorder(recorders=["spheres", "intr"], dead=True)] + O.engines),
         "VTKRecorder is to record 'intr'",
     ),
+    "order_of_the_four": (
+        lambda: setattr(O, "engines", [O.engines[-1]] + O.engines[:-1]),
+        "its engines is NewtonIntegrator, ForceResetter, InsertionSortCollider, InteractionLoop; it must be ForceResetter",
+    ),
+    "forces_that_are_erased": (
+        lambda: setattr(O, "engines", O.engines + [wrapper.ForceEngine()]),
+        "ForceEngine stands behind NewtonIntegrator, .*put it between InteractionLoop and NewtonIntegrator",
+    ),
+    "misplaced_drives_and_measures": (
+        lambda: setattr(O, "engines", O.engines + [engines.ContactForceBinner(body=0)]),
+        "ContactForceBinner stands behind NewtonIntegrator; put it between",
+    ),
 }
 
 
