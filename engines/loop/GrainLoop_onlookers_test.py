@@ -178,3 +178,40 @@ def test_measures_make_nobody_write_all_bodies():
     shown = O.bodies[free[3]].state.pos[1]
     height = loop.positions[list(loop.ids).index(free[3])][1]
     assert shown == height
+
+
+@pytest.mark.parametrize("what", ["added", "erased"])
+def test_bodies_that_come_or_go_between_sync_and_read_do_so_as_on_yades_loop(what):
+    seen = []
+    for kind in ("yade", "grain"):
+        _, free = bed()
+        loop = grain_loop.use_grain_loop() if kind == "grain" else None
+        disks.run(100)
+        if loop:
+            loop.sync()
+        if what == "added":
+            disks.disk(0.5, 6.0)
+        else:
+            O.bodies.erase(free[1])
+        if loop:
+            loop.read()
+        disks.run(1500)
+        seen.append(np.array([[*b.state.pos, *b.state.vel] for b in O.bodies if b]))
+    np.testing.assert_allclose(seen[1], seen[0], rtol=0, atol=1e-9)  # with impacts
+
+
+@pytest.mark.parametrize("what", ["added", "erased"])
+def test_a_body_that_came_or_went_unsaid_stops_the_run_until_it_is_repaired(what):
+    _, free = bed()
+    loop = grain_loop.use_grain_loop()
+    disks.run(100)
+    if what == "added":
+        disks.disk(0.5, 6.0)
+    else:
+        O.bodies.erase(free[1])
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="read\\(\\) after"):
+            O.step()
+    loop.read()
+    disks.run(100)
+    assert O.bodies[free[0]].state.vel[1] == pytest.approx(-0.2, rel=1e-9)

@@ -39,6 +39,7 @@ REFUSED = {  # module -> what reads interactions, or forces of contacts, by YADE
     ),
     "yade.utils": ("plotDirections", "plotNumInteractionsHistogram"),
 }
+EXPORTS = ("exportContactPoints", "exportInteractions")  # methods of yade.export.VTKExporter
 WAYS_OUT = {"setContactFriction": "assign loop.friction", "createInteraction": "GrainLoop finds all contacts by itself"}
 
 
@@ -153,9 +154,7 @@ def instead(original, answer):
 
 def install():
     """Put these functions wherever a loaded module holds YADE's own under its name; once."""
-    import yade._utils  # noqa: F401
-    import yade.utils  # noqa: F401
-
+    install_methods()
     answers = {name: (module, functools.partial(refusing, name)) for module in REFUSED for name in REFUSED[module]}
     for name, (module, answer) in {**answers, **ANSWERED}.items():
         original = getattr(sys.modules[module], name, None)  # not every version of YADE has each
@@ -164,3 +163,23 @@ def install():
         chosen = instead(original, answer)
         for holder in [m for m in list(sys.modules.values()) if getattr(m, "__dict__", {}).get(name) is original]:
             setattr(holder, name, chosen)
+
+
+def install_methods():
+    """Let exporters of interactions, and post2d.data(intr=True), refuse too; once."""
+    from yade import export, post2d, utils  # noqa: F401
+
+    for name in EXPORTS:
+        original = getattr(export.VTKExporter, name, None)
+        if original is not None and not hasattr(original, "__wrapped__"):
+            setattr(export.VTKExporter, name, instead(original, functools.partial(refusing, name)))
+    if hasattr(post2d.data, "__wrapped__"):
+        return
+    original = post2d.data
+
+    def data(extractor, flattener, intr=False, *args, **keys):
+        if intr:
+            refuse("post2d.data with intr=True")
+        return original(extractor, flattener, intr, *args, **keys)
+
+    post2d.data = instead(original, data)

@@ -114,6 +114,25 @@ def test_what_reads_interactions_is_refused_by_name_under_grain_loop_alone(name)
     assert getattr(utils, name) is getattr(module, name)
 
 
+def test_exporters_of_interactions_are_refused(tmp_path):
+    from yade import export, post2d
+
+    pair()
+    disks.run(1)
+    exporter = export.VTKExporter(str(tmp_path / "out"))
+    exporter.exportInteractions()
+    grain_loop.use_grain_loop()
+    before = [p.name for p in tmp_path.iterdir()]
+    for name in interaction_helpers.EXPORTS:
+        with pytest.raises(RuntimeError, match=f"{name} needs YADE's interactions"):
+            getattr(exporter, name)()
+    with pytest.raises(RuntimeError, match="post2d.data with intr=True needs"):
+        post2d.data(lambda i: 1.0, post2d.AxisFlatten(axis=2), intr=True)
+    assert len(before) == 1 and [p.name for p in tmp_path.iterdir()] == before
+    speeds = post2d.data(lambda b: b.state.vel.norm(), post2d.AxisFlatten(axis=2))
+    assert len(speeds["x"]) == 2
+
+
 def test_on_yades_loop_yades_own_functions_answer():
     pair()
     loop = grain_loop.use_grain_loop()
