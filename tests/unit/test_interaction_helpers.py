@@ -1,6 +1,8 @@
 """YADE's helpers that read interactions: with GrainLoop they answer as on YADE's loop, or refuse by name."""
 
 import math
+import os
+import subprocess
 import sys
 
 import disks
@@ -170,6 +172,15 @@ def test_a_module_that_holds_yades_function_gets_the_new_one_and_others_keep_the
     interaction_helpers.install()
     assert holder.getStress is _utils.getStress is not original and other.getStress is len
     monkeypatch.setattr(utils, "getStress", _utils.getStress)
+
+
+def test_names_that_a_script_has_from_yade_are_the_new_ones():
+    """As the yade program does: names first, the user's script with graindrive behind them."""
+    script = (
+        "import yade; from yade.utils import *; old = getStress; import graindrive.engines;"
+        " assert getStress is yade.utils.getStress is not old and getStress.__wrapped__ is old"
+    )
+    subprocess.run([sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": ":".join(sys.path)}, check=True)
 
 
 def test_installing_twice_wraps_once():
