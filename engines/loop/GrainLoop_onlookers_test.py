@@ -114,6 +114,35 @@ def test_a_kinematic_engine_of_yades_moves_frozen_disks():
     assert_same_motion(both_loops(build, steps=1500), tolerance=1e-9)  # with impacts
 
 
+def speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, place):
+    """The speeds along x after each of ten steps; TranslationEngine stands at that place among YADE's four engines."""
+    disks.new_scene(dt=1e-4)
+    base, disk = disks.disk(0, 0, frozen=True), disks.disk(0, 0.99)
+    disks.loop(disks.hertz(), friction=0.4, gravity=(0, -10))
+    disks.run(3)  # they touch before the base moves
+    engine = wrapper.TranslationEngine(ids=[base], translationAxis=(1, 0, 0), velocity=0.1)
+    O.engines = O.engines[:place] + [engine] + O.engines[place:]
+    if loop == "grain":
+        grain_loop.use_grain_loop()
+    speeds = []
+    for _ in range(10):
+        O.step()
+        speeds.append(O.bodies[disk].state.vel[0])
+    return np.array(speeds)
+
+
+def test_what_is_written_before_the_contacts_acts_in_the_same_step_on_both_loops():
+    yade, grain = (speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, 2) for loop in ("yade", "grain"))
+    np.testing.assert_allclose(grain, yade, rtol=1e-9)
+    assert yade[0] > 0
+
+
+def test_what_is_written_behind_the_contacts_acts_one_step_earlier_than_on_yades_loop():
+    yade, grain = (speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, 3) for loop in ("yade", "grain"))
+    assert yade[0] == 0 and grain[0] > 0
+    np.testing.assert_allclose(grain[:-1], yade[1:], rtol=0.02)  # the normal force grows by a percent a step
+
+
 def test_one_step_shows_all_disks():
     _, free = bed()
     grain_loop.use_grain_loop()
