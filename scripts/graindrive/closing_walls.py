@@ -106,7 +106,7 @@ def rest(recipe, ids):
     limit = len(ids) * mean_area(recipe) * recipe.material.density * recipe.rest_speed**2 / 2
     block = int(np.ceil(recipe.d / recipe.rest_speed / O.dt / 100))
     loop = scene.fast_loop()
-    aim = Calming(lambda: loop.kineticEnergy / limit, 1.0, f"the energy at {recipe.rest_speed:g} m/s")
+    aim = Calming(lambda: loop.kineticEnergy / limit, 1.0, f"times that at {recipe.rest_speed:g} m/s")
 
     def stop_unless_at_rest(done):
         if not aim.reached(done):

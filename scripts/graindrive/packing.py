@@ -124,17 +124,15 @@ def settle(recipe):
         return bed
     if recipe.lid == "rigid":
         top = float((bed["y"] + bed["r"]).max())
-        return come_to_rest(
-            recipe, bed["x"], bed["y"], bed["r"], bed["density"], top + 0.5, "the bed under its rigid lid"
-        )
+        return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], bed["density"], top + 0.5, " under a rigid lid")
     density = lid.heavy_layer(bed, recipe.width, recipe.lid_pressure, recipe.material.density, lid.BED_FRACTION)
-    return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density, what="the bed under its lid of heavy grains")
+    return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density, under=" under a lid of heavy grains")
 
 
-def come_to_rest(recipe, x, y, r, density, lid_y=None, what="a bed"):
+def come_to_rest(recipe, x, y, r, density, lid_y=None, under=""):
     """Let grains fall until they rest, on the fast loop, under a rigid lid at `lid_y` if that is given; return the bed.
 
-    `what` they are a person is told.
+    A person is told what they settle `under`.
     """
     from yade import O
 
@@ -145,7 +143,10 @@ def come_to_rest(recipe, x, y, r, density, lid_y=None, what="a bed"):
         beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ"
     )
     ids = scene.add_disks(x, y, r, density)
-    print(f"settling {what} of {len(ids)} grains until they keep less than {recipe.rest:g} m g d each", file=sys.stderr)
+    print(
+        f"settling a bed of {len(ids)} grains{under} until they keep less than {recipe.rest:g} m g d each",
+        file=sys.stderr,
+    )
     rigid = None if lid_y is None else lid.add_rigid(recipe.width, lid_y, recipe.lid_pressure)
     scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=LARGEST_OVERLAP)
     O.dt = recipe.dt
@@ -180,7 +181,7 @@ def run_until_at_rest(recipe, ids, density, fall_time):
     aim = Calming(
         lambda: kinetic_energy_per_grain(scene.rows_of(ids), density),
         recipe.rest,
-        "m g d of kinetic energy each",
+        "m g d per grain",
         least,
     )
     progress.run_blocks(round(50 * least), block, aim.reached, grains=len(ids), label="settling", aim=aim)

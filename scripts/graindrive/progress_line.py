@@ -45,7 +45,7 @@ class Calming:
 
     def in_words(self):
         """Return the energy and its target."""
-        return f"{self.energy:.2g} of {self.unit}, to fall below {self.target:.2g}"
+        return f"kinetic energy {self.energy:.2g} {self.unit}, to fall below {self.target:.2g}"
 
 
 class ProgressLine:
