@@ -37,16 +37,9 @@ struct RigidMotion {
 	/// The box parallel to the world's axes around a box of the frame.
 	Bounds<D> bounds(const Bounds<D>& in_frame) const
 	{
-		Bounds<D> box{ place, place };
-		for (int j = 0; j < D; ++j) {
-			const Vec<D> axis = turn.apply(Vec<D>::along(j));
-			for (int k = 0; k < D; ++k) {
-				if (std::abs(axis[k]) < 1e-15) continue;  // a round-off must not turn an infinite side into this direction
-				box.low[k] += std::min(axis[k] * in_frame.low[j], axis[k] * in_frame.high[j]);
-				box.high[k] += std::max(axis[k] * in_frame.low[j], axis[k] * in_frame.high[j]);
-			}
-		}
-		return box;
+		std::array<Vec<D>, D> axes;
+		for (int k = 0; k < D; ++k) axes[k] = turn.apply(Vec<D>::along(k));
+		return moved_bounds<D>(in_frame, axes, place);
 	}
 
 	/// @throws std::invalid_argument unless all numbers are finite

@@ -1,5 +1,6 @@
 /// A surface: what tells at any point how far a solid is, and which way leads out of it.
 #pragma once
+#include <array>
 #include <limits>
 #include <memory>
 
@@ -21,6 +22,21 @@ struct Bounds {
 
 	Vec<D> low = Vec<D>::all(-infinity), high = Vec<D>::all(infinity);  ///< [m]
 };
+
+/// The box parallel to the world's axes around the box of a frame, whose axes and origin are seen from the world.
+template <int D>
+Bounds<D> moved_bounds(const Bounds<D>& in_frame, const std::array<Vec<D>, D>& axes, const Vec<D>& origin)
+{
+	Bounds<D> box{ origin, origin };
+	for (int j = 0; j < D; ++j)
+		for (int k = 0; k < D; ++k) {
+			const double part = axes[j][k];
+			if (std::abs(part) < 1e-15) continue;  // a round-off must not turn an infinite side into this direction
+			box.low[k] += std::min(part * in_frame.low[j], part * in_frame.high[j]);
+			box.high[k] += std::max(part * in_frame.low[j], part * in_frame.high[j]);
+		}
+	return box;
+}
 
 /// A solid body by distance and normal. A shape of one's own derives from this and answers two questions; see `surface_test.cpp`.
 ///
