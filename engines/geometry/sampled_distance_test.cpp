@@ -86,7 +86,7 @@ TEST(SampledDistance, ErrorsFallWithTheThirdPowerOfTheSpacing)
 	expect_third_order<2>(1, {});
 	expect_third_order<3>(1, {});
 	expect_third_order<2>(1e-6, { 1e-3, -2e-3 });
-	expect_third_order<3>(1, { 1e6, -1e6, 3e6 });
+	expect_third_order<2>(1, { 1e6, -1e6 });
 }
 
 TEST(SampledDistance, DistanceAndNormalFitTogetherAndAreContinuous)

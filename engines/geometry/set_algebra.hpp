@@ -7,9 +7,10 @@
 ///   off an edge or corner:   the nearest point x of all parts minimises |x - p|^2 with d_i(x) <= 0 (see `set_algebra.cpp`)
 ///
 /// and for unions the same of the complements. Off an edge the iteration finds a local minimum: the nearest point of all wherever p
-/// is nearer to the edge than the parts' radii of curvature and their other edges. Farther away it may be another minimum, so the
-/// distance a bound from above; where the iteration finds none, as for parts that do not meet, the distance is max d_i, a bound from
-/// below. Near surfaces that touch at less than 1e-7 rad it is that bound too. Parts that give bounds give bounds.
+/// is nearer to the edge than a tenth of the parts' radii of curvature and of the way to other edges. Farther away it may be another
+/// minimum, so the distance a bound from above; where the iteration finds none, as for parts that do not meet, the distance is
+/// max d_i, a bound from below, whose foot x - d n is not in all parts. Where surfaces meet at less than 1e-7 rad it is that bound
+/// too. Parts that give bounds give bounds.
 #pragma once
 #include <vector>
 
