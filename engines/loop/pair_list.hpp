@@ -26,7 +26,8 @@ struct Reach {
 
 class PairList {
 public:
-	std::vector<Candidate> candidates;
+	/// For pairs that someone else keeps, with their springs.
+	explicit PairList(std::vector<Candidate>& pairs) : candidates(pairs) {}
 
 	/// Selects the candidates nearer than the sum of their reaches.
 	PairCounts select(const GrainRow* rows, const Box& box, const std::vector<Reach>& reach);
@@ -58,6 +59,8 @@ public:
 	double slip(std::uint32_t candidate) const;
 
 private:
+	std::vector<Candidate>& candidates;
+
 	void put(AlignedVector<double>& list, std::uint32_t at, double number);
 
 	Precision precision = Precision::double_;
