@@ -113,7 +113,7 @@ void Stepper::compute_body_forces()
 	failure = nullptr;
 	prepare();
 	if (failure) std::rethrow_exception(failure);
-	pairs.keep_early_slips();
+	pairs.keep_early_pairs();
 	team->run([&](int rank) { compute_early_pairs(rank); });
 	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
 		if (!state.body_fixed[b]) collect_forces(b);
@@ -186,6 +186,8 @@ void Stepper::finish()
 	spend_budgets();
 	++state.steps;
 	body_forces_known = false;
+	drifted = data.drift;
+	laid_out_since_forces = false;
 }
 
 void Stepper::select()
@@ -214,6 +216,7 @@ void Stepper::select()
 
 void Stepper::lay_out_pairs()
 {
+	laid_out_since_forces = state.steps > 0;
 	pairs.lay_out(state.rows.data(), n_free, n_grains, state.scene.threads, state.scene.precision, n_grains);
 	point_at_lists();
 }

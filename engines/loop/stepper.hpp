@@ -12,7 +12,7 @@
 
 namespace graindrive::loop {
 
-/// A contact: forces as of the last step, where the grains are now. Forces act on `first`; on `second` they are opposite.
+/// A contact, all of it at the moment of its forces: the beginning of the last step. Forces act on `first`; on `second` they are opposite.
 struct Contact {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
 	double n_x, n_y;              ///< from first to second
@@ -81,7 +81,9 @@ public:
 	void positions(double* xy) const;        ///< size() pairs, in the order of `Scene::grains`
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
-	std::vector<Contact> contacts() const;
+	/// Contacts of the last step, at its beginning; those at the present positions while a step is under way, or where pairs have been
+	/// laid out anew since.
+	std::vector<Contact> contacts();
 	/// Contacts at the present positions, before anything moves: the forces that the next step will find, to the last bit.
 	std::vector<Contact> present_contacts();
 	/// The same and `wall_contacts`, for someone who looks between steps: no step is then under way if none was before.
@@ -96,6 +98,8 @@ public:
 	void set_pushes(std::vector<Push> on_grains);
 	/// Gives a grain another place, velocity and spin, between two steps.
 	void put(std::size_t index, const Grain& grain);
+	/// Gives a body and its members another velocity, between two steps.
+	void set_velocity(std::size_t body, double vx, double vy, double spin);
 	/// Goes on with law, friction, gravity, precision, threads and skin of `wanted`. Springs stay while the kind of law does.
 	/// @throws std::invalid_argument as the constructor, and for another physics while energy is tracked
 	void change(const Scene& wanted);
@@ -151,6 +155,8 @@ private:
 	std::exception_ptr failure;
 	AlignedVector<OutsideForce> outside;  // of damped scenes: by row
 	bool body_forces_known = false;
+	bool laid_out_since_forces = false;
+	double drifted = 0;  // for how long grains have moved since their forces were computed [s]
 
 	std::vector<Spring> given_springs;  // until the first search
 	std::vector<int> grain_names;       // for guards; none: indices
@@ -205,7 +211,10 @@ private:
 	double farthest_before_selection() const;
 	void spend_budgets();
 	double slipping_bound() const;
-	double overlap_of(const Candidate& pair) const;
+	std::vector<Contact> contacts_in_memory() const;
+	GrainRow row_before(double time, std::uint32_t at) const;
+	double moved_since_forces(std::uint32_t candidate) const;
+	double overlap_at_forces(std::uint32_t candidate) const;
 	ForceParts parts(const PairForce<double>& force) const;
 	bool slips(const ForceParts& force, double remembered) const;
 

@@ -57,6 +57,13 @@ void Stepper::move_body(std::size_t b)
 	place_members(b);
 }
 
+void Stepper::set_velocity(std::size_t b, double vx, double vy, double spin)
+{
+	RigidBody& body = state.scene.bodies[b];
+	body.vx = vx, body.vy = vy, body.spin = spin;
+	place_members(b);
+}
+
 /// r_i = X + R(angle) b_i,  v_i = V + w x (r_i - X)
 void Stepper::place_members(std::size_t b)
 {

@@ -80,11 +80,11 @@ void Stepper::set_pushes(std::vector<Push> on_grains)
 	if (body_forces_known) hand_outside_forces_over();
 }
 
-/// Springs of the pairs that were computed early go back to where they were, so that those can be computed again.
+/// Springs and forces of the pairs that were computed early go back to where they were, so that those can be computed again.
 void Stepper::take_back_body_forces()
 {
 	if (!body_forces_known) return;
-	pairs.put_back_early_slips();
+	pairs.put_back_early_pairs();
 	for (WallTouch& touch : state.wall_touches) touch.slip = touch.slip_before;
 	body_forces_known = false;
 }

@@ -1,6 +1,7 @@
 /// What others may look at: grains in the order they were given, contacts, energies.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engines/loop/stepper.hpp"
 
@@ -71,29 +72,38 @@ double Stepper::slipping_bound() const
 	return state.scene.friction && mu > 0 ? mu * (state.scene.precision == Precision::single ? 1 - 1e-5 : 1 - 1e-12) : HUGE_VAL;
 }
 
-std::vector<Contact> Stepper::contacts() const
+std::vector<Contact> Stepper::contacts()
+{
+	return body_forces_known || laid_out_since_forces ? present_contacts() : contacts_in_memory();
+}
+
+std::vector<Contact> Stepper::contacts_in_memory() const
 {
 	std::vector<Contact> found;
 	for (std::uint32_t c = 0; c < pairs.place.size(); ++c) {
 		const ForceParts f = parts(pairs.force(c));
 		if (f.normal == 0 && f.friction == 0) continue;
 		const Candidate& pair = state.candidates[c];
-		const GrainRow& a = state.rows[pair.first];
-		const double overlap = overlap_of(pair), slip = pairs.slip(c);
+		const GrainRow a = row_before(moved_since_forces(c), pair.first);
+		const double overlap = overlap_at_forces(c), slip = pairs.slip(c);
 		found.push_back({ state.index_of[pair.first], state.index_of[pair.second], f.n_x, f.n_y, a.x + a.radius * f.n_x,
 			a.y + a.radius * f.n_y, f.normal, f.friction, overlap, slip, slips(f, slip) });
 	}
 	return found;
 }
 
-/// The kernels compute all pairs once more than steps need; springs, which they lengthen, are put back.
+/// The kernels compute all pairs once more than steps need; forces and springs that stood in memory are put back.
 std::vector<Contact> Stepper::present_contacts()
 {
 	const bool was_under_way = body_forces_known;
 	compute_body_forces();
 	pairs.keep_slips();
+	const PairList::Bytes forces = pairs.forces_in_memory();
 	for (const SweepRange& sweep : pairs.sweeps) kernel.pairs(data, sweep.pair_begin, sweep.pair_end, false);
-	std::vector<Contact> found = contacts();
+	const double moved = std::exchange(drifted, 0);
+	std::vector<Contact> found = contacts_in_memory();
+	drifted = moved;
+	pairs.put_back_forces(forces);
 	pairs.put_back_slips();
 	if (!was_under_way) take_back_body_forces();  // who looks leaves no trace
 	return found;
@@ -117,9 +127,35 @@ std::vector<Spring> Stepper::springs() const
 	return found;
 }
 
-double Stepper::overlap_of(const Candidate& pair) const
+/// A grain where it was that long ago, within the last step: x_n = x_{n+1} - v_{n+1/2} dt, members with their body.
+GrainRow Stepper::row_before(double time, std::uint32_t at) const
 {
-	const GrainRow &a = state.rows[pair.first], &b = state.rows[pair.second];
+	GrainRow row = state.rows[at];
+	if (time == 0) return row;
+	if (at < n_free) {
+		row.x -= row.vx * time, row.y -= row.vy * time;
+		return row;
+	}
+	const Member& member = state.members[at - n_free];
+	const RigidBody& body = state.scene.bodies[member.body];
+	if (state.body_fixed[member.body]) return row;
+	const double angle = body.angle - body.spin * time, c = std::cos(angle), s = std::sin(angle);
+	row.x = body.x - body.vx * time + (c * member.x - s * member.y) + member.shift_x;
+	row.y = body.y - body.vy * time + (s * member.x + c * member.y) + member.shift_y;
+	return row;
+}
+
+/// Time since the forces of a pair that stand in memory were computed [s].
+double Stepper::moved_since_forces(std::uint32_t candidate) const
+{
+	return body_forces_known && pairs.is_early(candidate) ? 0 : drifted;
+}
+
+double Stepper::overlap_at_forces(std::uint32_t candidate) const
+{
+	const Candidate& pair = state.candidates[candidate];
+	const double moved = moved_since_forces(candidate);
+	const GrainRow a = row_before(moved, pair.first), b = row_before(moved, pair.second);
 	const Separation d = separation(a, b, state.scene.box);
 	return a.radius + b.radius - std::hypot(d.x, d.y);
 }
@@ -137,7 +173,7 @@ void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
 			const Candidate& pair = state.candidates[share.candidate];
 			const double side = share.partner ? -1 : 1, n_x = side * f.n_x,
 						 n_y = side * f.n_y;  // F_t along z x n turns round with n
-			const double lever = at_contact_point() ? row.radius - overlap_of(pair) / 2 : row.radius;
+			const double lever = at_contact_point() ? row.radius - overlap_at_forces(share.candidate) / 2 : row.radius;
 			touches.push_back({ state.index_of[n_free + m], state.index_of[share.partner ? pair.first : pair.second],
 				c * state.members[m].x - s * state.members[m].y + lever * n_x,
 				s * state.members[m].x + c * state.members[m].y + lever * n_y, n_x, n_y, f.normal, f.friction,

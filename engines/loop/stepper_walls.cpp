@@ -270,7 +270,7 @@ std::vector<Contact> Stepper::wall_contacts() const
 	for (const WallTouch& touch : state.wall_touches) {
 		if (!(touch.overlap > 0)) continue;
 		const WallMeeting m = meeting(touch);
-		const GrainRow& row = state.rows[row_of[touch.grain]];
+		const GrainRow row = row_before(body_forces_known ? 0 : drifted, row_of[touch.grain]);
 		found.push_back(
 			{ touch.grain, touch.wall, m.n_x, m.n_y, row.x + row.radius * m.n_x, row.y + row.radius * m.n_y, touch.normal,
 				touch.friction, touch.overlap, touch.slip, std::abs(touch.friction) >= bound * std::abs(touch.normal) });

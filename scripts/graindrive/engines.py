@@ -27,3 +27,7 @@ find_yade()
 
 from ._engines import *  # noqa: E402, F401, F403
 from ._engines import prove_layout  # noqa: E402, F401
+
+from . import pausing  # noqa: E402
+
+pausing.watch()
