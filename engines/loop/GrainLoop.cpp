@@ -54,6 +54,7 @@ void GrainLoop::require_scene()
 	meet_engines();
 	loop::Scene read;
 	loop::read_yade(*scene, watched, read);
+	forces_reset_at_ = scene->forces.syncCount;
 }
 
 void GrainLoop::build()
@@ -70,6 +71,7 @@ void GrainLoop::build()
 	stepper_->track_energy(trackEnergy);
 	bring_walls();
 	read_from_ = scene;
+	if (forces_reset_at_ < 0) forces_reset_at_ = scene->forces.syncCount;  // YADE's last step may have left its forces there
 	stepper_->speak_of(map_.grain_id, scene->iter);
 	note_what_was_built();
 	require_spread();

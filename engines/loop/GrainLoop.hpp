@@ -146,7 +146,7 @@ private:
 	/// What a body counts with in its pairs, and a material's constants, as they were when the scene was read.
 	struct Counted {
 		Real mass, inertia;
-		bool frozen, damped;
+		bool held, damped;  // held: all its directions are blocked
 	};
 	std::vector<Counted> counted_;  // by rigid body
 	struct KnownMaterial {
@@ -165,7 +165,7 @@ private:
 	std::vector<bool> met_dead_;
 
 	bool settings_changed_ = false, pushed_ = false;
-	long forces_reset_at_ = 0;  // syncCount of YADE's force container after the loop has emptied it
+	long forces_reset_at_ = -1;  // syncCount of YADE's force container after the loop has emptied it
 	std::vector<int> built_watched_;
 	Vector3r built_periods_ = Vector3r::Zero();
 	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();

@@ -107,8 +107,9 @@ void GrainLoop::hear_bodies()
 		const Written& then = written_[g];
 		if (now == then) continue;
 		const bool free = stepper_->settings().grains[g].body == loop::free_grain;
-		if (is_member_or_body(g)) {  // followed at every step
-			now.x = then.x, now.y = then.y, now.vx = then.vx, now.vy = then.vy, now.spin = then.spin;
+		if (is_member_or_body(g)) now.x = then.x, now.y = then.y;
+		if (!free) {  // followed at every step, or looked at in read_anew_what_changed
+			now.vx = then.vx, now.vy = then.vy, now.spin = then.spin;
 			now.blocked = then.blocked;
 		}
 		const loop::Grain motion{ now.x, now.y, now.vx, now.vy, now.spin };
@@ -138,9 +139,9 @@ void GrainLoop::hear_bodies()
 	heard_motions_.clear();
 }
 
-/// A frozen disk that someone has set in motion becomes a body of its own. A body with another mass or inertia, or one that comes to be
-/// frozen or is no longer, counts otherwise in its pairs. Either is heard in the same step, whose contacts still see the velocities
-/// of the step before, as on YADE's loop.
+/// A frozen disk that someone has set in motion becomes a body of its own. A body with another mass or inertia, or one that is held
+/// or freed, counts otherwise in its pairs; one that was frozen and is driven counts as infinitely heavy as before. Either is heard
+/// in the same step, whose contacts still see the velocities of the step before, as on YADE's loop.
 void GrainLoop::read_anew_what_changed()
 {
 	if (!set_in_motion() && !counts_otherwise()) return;
@@ -164,7 +165,7 @@ bool GrainLoop::set_in_motion() const
 GrainLoop::Counted GrainLoop::counted(int id) const
 {
 	const yade::State& state = *(*scene->bodies)[id]->state;
-	return { state.mass, state.inertia[2], loop::is_frozen(state), state.isDamped };
+	return { state.mass, state.inertia[2], state.blockedDOFs == yade::State::DOF_ALL, state.isDamped };
 }
 
 bool GrainLoop::counts_otherwise() const
@@ -172,7 +173,7 @@ bool GrainLoop::counts_otherwise() const
 	for (std::size_t b = 0; b < counted_.size(); ++b) {
 		if (map_.body_id[b] < 0) continue;
 		const Counted now = counted(map_.body_id[b]), then = counted_[b];
-		if (now.mass != then.mass || now.inertia != then.inertia || now.frozen != then.frozen || now.damped != then.damped)
+		if (now.mass != then.mass || now.inertia != then.inertia || now.held != then.held || now.damped != then.damped)
 			return true;
 	}
 	return false;

@@ -122,14 +122,3 @@ def test_a_material_that_changes_is_refused_until_the_loop_is_told(change):
         O.engines[-1]()
     loop.read()
     disks.run(10)
-
-
-def test_friction_that_yades_helper_sets_is_refused():
-    from yade import utils
-
-    crowd(friction=0.2)
-    disks.run(10)
-    before = O.materials[0].frictionAngle
-    utils.setContactFriction(before / 2)
-    with pytest.raises(RuntimeError):
-        O.engines[-1]()

@@ -31,11 +31,10 @@ def use_grain_loop(periods=None, **settings):
     Present contacts keep their tangential springs. Labels of YADE's four engines and of their functors then refuse to be
     read or set (`stand_ins`).
 
-    What engines between contacts and integrator write into bodies (TranslationEngine, a PyRunner) is heard in the contacts
-    of the same step, on YADE's loop in those of the next one. For a frictional bed on frozen disks that TranslationEngine
-    sets in motion (0.1 m/s, dt = 1e-4 s, no damping) velocities then differ by 1.7e-5, 1.7e-4, 6.7e-4 m/s after 1, 10, 100
-    steps; between ForceResetter and InteractionLoop the same engine gives YADE's numbers to 1e-14 m/s. With damping a
-    contact of a frozen disk that is set in motion takes the reduced mass of the pair anew, and YADE's keeps that of before.
+    Contacts of a step see driven and frozen bodies with the velocities of the step before, and free disks as engines before
+    GrainLoop (TranslationEngine, a PyRunner) have left them. On YADE's loop it depends on whether the engine stands before
+    or behind InteractionLoop; the difference is a delay of one step. A contact of a frozen disk that is set in motion takes
+    the reduced mass of the pair anew, and YADE's keeps that of before.
 
     Raises UsageError for what GrainLoop does not do (`take_over.RULES`, `loop_laws`), ValueError for bodies and cells that
     it cannot move, RuntimeError for engines that it does not know; O.engines then stays as it was.
@@ -60,6 +59,7 @@ def use_grain_loop(periods=None, **settings):
         O.engines = before
         raise
     O.interactions.clear()  # GrainLoop does not follow them; its own contacts are in contacts()
+    O.forces.reset(resetAll=False)  # those of YADE's last step, which ForceResetter would erase in the next one
     note_exchange(loop, made)
     stand_ins.put(loop)
     take_over.warn_of_runners()

@@ -253,7 +253,7 @@ def test_an_outline_file_with_new_contents_is_another_run(home, tmp_path):
         (["intruder_mass=1e-9"], "of a body of mass 1e-09"),
         (["dt_factor=1e-12"], "steps, more than 1e+10; raise dt_factor or shorten the run"),
         (["dt_factor=1e9"], "lower dt_factor, to 6.5e-09 times its value or less"),
-        (["shape=noise.WKT"], "shape=noise.WKT: noise.WKT: line 2 must hold two numbers x, y"),
+        (["shape=noise.WKT"], "shape=noise.WKT: noise.WKT: line 1 must hold two numbers x, y"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(home, tmp_path, keys, words):
