@@ -102,6 +102,24 @@ std::string read_checkpoint(const std::string& path, Contents expected)
 	return body;
 }
 
+void visit_law(Packer& pack, const laws::ContactLaw& law)
+{
+	pack(std::string(laws::name_of(law)));
+	pack(laws::constants_of(law));
+}
+
+void visit_law(Unpacker& unpack, laws::ContactLaw& law)
+{
+	std::string name;
+	std::vector<Real> constants;
+	unpack(name), unpack(constants);
+	try {
+		law = laws::law_with(name, constants);
+	} catch (const std::invalid_argument& refusal) {
+		throw std::runtime_error(std::string("checkpoint: ") + refusal.what());
+	}
+}
+
 namespace {
 
 template <class Visitor, class SceneType>
@@ -111,7 +129,7 @@ void visit_scene(Visitor&& visit, SceneType& s)
 	visit(s.bodies);
 	visit(s.walls);
 	visit(s.box);
-	visit(s.law);
+	visit_law(visit, s.law);
 	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision),
 		visit(s.spin_response), visit(s.skin), visit(s.target_area_fraction), visit(s.damping), visit(s.damps_gravity);
 }

@@ -106,7 +106,7 @@ void Stepper::check_pairs() const
 		const Separation d = separation(a, b, scene.box);
 		const double allowed = guards.largest_overlap * std::min(a.radius, b.radius), nearest = a.radius + b.radius - allowed;
 		if (d.x * d.x + d.y * d.y >= nearest * nearest) continue;
-		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y);
+		const double overlap = overlap_of(pair);
 		throw std::runtime_error(sentence(now(), introduce(pair.first), " and ", introduce(pair.second), " overlap by ",
 			overlap / std::min(a.radius, b.radius), " of a radius, more than ", guards.largest_overlap,
 			"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));

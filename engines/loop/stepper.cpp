@@ -25,7 +25,9 @@ void Stepper::set_up_kernels()
 	data.gravity_x = scene.gravity_x;
 	data.gravity_y = scene.gravity_y;
 	data.spin_response = scene.rotation ? scene.spin_response : 0;
-	data.law = &scene.law;
+	law_in_float = laws::converted<float>(scene.law);
+	const auto address = [](const auto& law) -> const void* { return &law; };
+	data.law = scene.precision == Precision::single ? std::visit(address, law_in_float) : std::visit(address, scene.law);
 	data.damping = scene.damping;
 	data.damps_gravity = scene.damps_gravity;
 	if (scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = scene.box.x_high - scene.box.x_low);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engines/loop/pair_geometry.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
@@ -119,9 +120,7 @@ std::vector<Spring> Stepper::springs() const
 
 double Stepper::overlap_of(const Candidate& pair) const
 {
-	const GrainRow &a = rows[pair.first], &b = rows[pair.second];
-	const Separation d = separation(a, b, scene.box);
-	return a.radius + b.radius - std::hypot(d.x, d.y);
+	return placement(rows[pair.first], rows[pair.second], scene.box).overlap;
 }
 
 void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const
