@@ -12,7 +12,11 @@ LONG_REST = 8  # a rest counts if the body would else have gone so many times as
 
 @dataclass(frozen=True)
 class Drift:
-    """Mean velocity with standard error over the cycles from `start` to `end` (times), and the cycle means it rests on."""
+    """Mean velocity with standard error over whole cycles, and the cycle means it rests on.
+
+    The cycles lie between the times `start`, when the first one begins, and `end`, when the last one ends; `cycle_t`,
+    `cycle_y` (cycles,) are the middles and mean positions of all cycles of the run.
+    """
 
     rate: float
     error: float
@@ -25,8 +29,9 @@ class Drift:
 def drift(t, y, period, *, skip=0.1, rest=REST):
     """Return the `Drift` of a body that is shaken with `period`: mean of the cycle means' increments over the period.
 
-    `t`, `y` (n,): time and position, t rising. The first part `skip` of the run is left out. If the body comes to rest at
-    its final position the average ends there (`end_of_motion`). With fewer than two cycles in the window the rate is NaN.
+    `t`, `y` (n,): time and position, t rising. A cycle counts if its middle lies behind the first part `skip` of the run.
+    If the body comes to rest at its final position the average ends there (`end_of_motion`), else with the run's last whole
+    cycle. With fewer than two cycles that count the rate is NaN.
     """
     t, y = np.asarray(t, dtype=float), np.asarray(y, dtype=float)
     cycle_t, cycle_y = cycle_means(t, y, period)
@@ -35,7 +40,8 @@ def drift(t, y, period, *, skip=0.1, rest=REST):
     if last - first < 2:
         return Drift(float("nan"), float("nan"), float("nan"), float("nan"), cycle_t, cycle_y)
     steps = block_mean(np.diff(cycle_y[first:last]) / period)
-    return Drift(steps.value, steps.error, float(cycle_t[first]), float(cycle_t[last - 1]), cycle_t, cycle_y)
+    start, end = (float(t[0] + period * cycles) for cycles in (first, last))
+    return Drift(steps.value, steps.error, start, end, cycle_t, cycle_y)
 
 
 def cycle_means(t, y, period):

@@ -68,8 +68,15 @@ QUANTITIES = {
         **of(
             "length", amplitude="wiggle: the key A; a velocity with drive=velocity", y_final="rise of the body in all"
         ),
-        **of("time", period="wiggle: the key T", rise_until="end of the average of rise_rate: arrest or the run's end"),
-        **of("velocity", rise_rate="V_y, mean velocity upwards from a tenth of the run to arrest"),
+        **of(
+            "time",
+            period="wiggle: the key T",
+            rise_until="when the last cycle of rise_rate ends: at arrest, else the run's last whole one",
+        ),
+        **of(
+            "velocity",
+            rise_rate="V_y, mean velocity upwards over the whole cycles from a tenth of the run (their middles) to arrest",
+        ),
         **of(
             "length",
             fall_height="of the shape: from the lowest point with a vertical tangent to the top, the cavity model's l",
@@ -188,7 +195,8 @@ QUANTITIES = {
             "-",
             contacts_by_angle="number of contacts in the bin",
             slipping_by_angle="of those that slip",
-            mobilised="F_T/(mu F_N); nan where nothing pressed",
+            mobilised="F_T/(mu F_N) of the sums: 1 where all slips, 1/(1 - 2p) where of |F_N| the share p pulls as contacts"
+            " part; nan: no force",
         ),
     },
     "phase": {**of("T", phase="middle of the part of the cycle, t/T"), **of("velocity", vy="V_y in this part")},

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+ROUND_OFF = 1e-14  # of a number that is the sum of some tens [-]
 FEWEST_BLOCKS = 16  # with fewer, a random walk passes the test for correlation
 
 
@@ -52,14 +53,16 @@ def block_mean(samples):
 def ratio_mean(numerator, denominator):
     """Return the `Mean` of mean(numerator)/mean(denominator) of two series (n,) that are correlated with each other.
 
-    Delta method: to first order the ratio R deviates by the mean of (a_i - R b_i)/mean(b), whose error blocking gives. NaN
-    where the denominator's mean is 0.
+    Delta method: to first order the ratio R deviates by the mean of (a_i - R b_i)/mean(b), whose error blocking gives. What
+    is no more than round-off of a_i counts as 0, so that a constant ratio has the error 0. NaN where the denominator's mean is 0.
     """
     a, b = np.asarray(numerator, dtype=float), np.asarray(denominator, dtype=float)
     if b.mean() == 0:
         return Mean(float("nan"), float("nan"), 1, False)
     ratio = float(a.mean() / b.mean())
-    deviation = block_mean((a - ratio * b) / b.mean())
+    rest = a - ratio * b
+    rest[np.abs(rest) <= ROUND_OFF * np.abs(a)] = 0
+    deviation = block_mean(rest / b.mean())
     return Mean(ratio, deviation.error, deviation.block_length, deviation.resolved)
 
 

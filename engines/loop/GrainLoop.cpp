@@ -1,13 +1,17 @@
 /// GrainLoop: makes the running loop of YADE's disks and steps it.
 #include "engines/loop/GrainLoop.hpp"
 
+#include <algorithm>
+
+#include "engines/seam/without_python.hpp"
+
 namespace graindrive {
 
 const char* const GrainLoop::documentation =
 	"Collider, contact law and integrator in one, for disks in the plane z = const: the "
 	"same physics as YADE's loop with the Law2_ functor\n"
 	"of the same name, many times faster.\n\n"
-	"Stands last in O.engines, after measures and drives: O.engines = "
+	"Stands in O.engines where NewtonIntegrator would, after measures and drives: O.engines = "
 	"[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
 	"Clumps, and disks that are driven, partly blocked, large or `watched`, are written "
 	"to YADE at every step; all others where somebody may look: at the end of\n"
@@ -91,6 +95,16 @@ void GrainLoop::note_what_was_built()
 	if (scene->isPeriodic) built_cell_ = scene->cell->hSize;
 	settings_changed_ = pushed_ = open_ = false;
 	written_.clear();
+	counted_.clear();
+	for (const int id : map_.body_id) counted_.push_back(id < 0 ? Counted{} : counted(id));
+	materials_.clear();
+	for (const int id : map_.grain_id) {
+		const auto& material = (*scene->bodies)[id]->material;
+		const auto* known = dynamic_cast<const yade::FrictMat*>(material.get());
+		const auto same = [&](const KnownMaterial& one) { return one.material == material; };
+		if (known && std::none_of(materials_.begin(), materials_.end(), same))
+			materials_.push_back({ material, known->young, known->poisson, known->frictionAngle });
+	}
 }
 
 void GrainLoop::bring_guards()
@@ -136,18 +150,41 @@ void GrainLoop::compute_body_forces()
 	guarded([&] { stepper_->compute_body_forces(); });
 }
 
+GrainLoop::Turn GrainLoop::take_turn() const
+{
+	Turn turn(busy_, std::try_to_lock);
+	if (turn) return turn;
+	const seam::WithoutPython released;  // a step that ends may need it
+	turn.lock();
+	return turn;
+}
+
+/// YADE's O.run(..., True) loses the error of a step that fails before it has begun to wait for it; it waits without Python's lock.
 void GrainLoop::action()
 {
+	try {
+		make_step();
+	} catch (...) {
+		seam::wait_for_python();
+		throw;
+	}
+}
+
+void GrainLoop::make_step()
+{
+	const Turn turn = take_turn();
 	meet_engines();
 	stepper();
 	const bool look_at_all = scene->stopAtIter != run_end_ || scene->iter % 100 == 0;
 	run_end_ = scene->stopAtIter;
 	require_bodies(look_at_all);
+	require_materials();
 	if (look_at_all) require_spread();
-	release_what_moves();
+	read_anew_what_changed();
 	compute_body_forces();
 	follow_bodies();
 	take_outside_forces();
+	open_ = false;
 	guarded([&] { stepper_->step(1); });
 	write_bodies();
 	if (someone_may_look()) sync();

@@ -1,6 +1,7 @@
 /// GrainLoop: one YADE engine in place of collider, interaction loop and integrator, for disks in two dimensions.
 #pragma once
 #include <memory>
+#include <mutex>
 
 #include "engines/base/contact_view.hpp"
 #include "engines/base/grain_view.hpp"
@@ -80,6 +81,11 @@ public:
 
 	/// Writes the loop's state into all of YADE's bodies.
 	void sync();
+	/// The same, unless they are true already: what others have written into them since is not lost.
+	void show_bodies();
+	/// Python may ask while the loop runs in the background: whoever holds this finds it between two steps.
+	using Turn = std::unique_lock<std::recursive_mutex>;
+	Turn take_turn() const;
 	/// For velocities of O.bodies that belong to the step itself, not half a step behind: takes the first step with half a kick.
 	void begin_on_step();
 	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
@@ -118,6 +124,7 @@ public:
 	bool dampGravity = true;
 
 private:
+	mutable std::recursive_mutex busy_;
 	std::unique_ptr<loop::Stepper> stepper_;
 	loop::YadeBodies map_;
 	yade::Scene* read_from_ = nullptr;
@@ -127,13 +134,26 @@ private:
 	/// A grain as YADE's body shows it to everyone: its motion, and what may not change without reading the scene anew.
 	struct Written {
 		Real x, y, vx, vy, spin, z, vz, spin_x, spin_y, mass, inertia, radius;
+		const void* material;
 		unsigned blocked;
-		int mask, clump, flags;
+		int mask, clump, flags, damped;
 		bool operator==(const Written& other) const;
 	};
 	std::vector<Written> written_;  // by grain, at the last sync
 	bool open_ = false;             // somebody may have written into bodies since then
 	std::vector<loop::Grain> heard_motions_;
+
+	/// What a body counts with in its pairs, and a material's constants, as they were when the scene was read.
+	struct Counted {
+		Real mass, inertia;
+		bool frozen, damped;
+	};
+	std::vector<Counted> counted_;  // by rigid body
+	struct KnownMaterial {
+		boost::shared_ptr<yade::Material> material;
+		Real young, poisson, friction_angle;
+	};
+	std::vector<KnownMaterial> materials_;
 
 	/// An engine of O.engines that may read or change any body, and whether it acts behind the loop in a step.
 	struct Onlooker {
@@ -145,6 +165,7 @@ private:
 	std::vector<bool> met_dead_;
 
 	bool settings_changed_ = false, pushed_ = false;
+	long forces_reset_at_ = 0;  // syncCount of YADE's force container after the loop has emptied it
 	std::vector<int> built_watched_;
 	Vector3r built_periods_ = Vector3r::Zero();
 	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();
@@ -153,6 +174,7 @@ private:
 	Real number(const std::string& name) const;
 	void check_material() const;
 	loop::Scene settings() const;
+	void make_step();
 	void build();
 	void note_what_was_built();
 	template <class Work>
@@ -167,7 +189,11 @@ private:
 	void bring_guards();
 	void require_periods() const;
 	void write_bodies();
-	void release_what_moves();
+	void read_anew_what_changed();
+	bool set_in_motion() const;
+	bool counts_otherwise() const;
+	Counted counted(int id) const;
+	void require_materials() const;
 	bool last_step_of_run() const;
 	void require_bodies(bool all) const;
 	void meet_engines();

@@ -165,6 +165,7 @@ std::string misfit_of_time_steps(Real saved, Real here)
 
 void GrainLoop::save_checkpoint(const std::string& path, const std::string& saved_scene)
 {
+	const Turn turn = take_turn();
 	stepper();
 	sync();
 	Surroundings all = of(*scene);
@@ -185,6 +186,7 @@ std::string GrainLoop::saved_scene(const std::string& path)
 
 void GrainLoop::restore_checkpoint(const std::string& path)
 {
+	const Turn turn = take_turn();
 	if (!scene) throw std::runtime_error("GrainLoop is in no scene yet; put it into O.engines and run a step first");
 	const auto require_fit = [&](const std::string& why) {
 		if (!why.empty()) throw std::runtime_error("checkpoint " + path + ": " + why + "; build the same scene first");

@@ -6,7 +6,8 @@ namespace {
 
 py::dict energy(GrainLoop& loop)
 {
-	const loop::EnergyLedger* ledger = running(loop).energy_ledger();
+	const Running stepper(loop);
+	const loop::EnergyLedger* ledger = stepper->energy_ledger();
 	if (!ledger)
 		throw std::runtime_error("GrainLoop.energy is kept while trackEnergy is True; set it before the steps that count");
 	const loop::Energies& e = ledger->energies();

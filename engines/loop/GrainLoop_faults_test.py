@@ -2,9 +2,10 @@
 
 import math
 
+import disks
 import pytest
 
-from graindrive import progress, scene
+from graindrive import grain_loop, progress, scene
 from graindrive.engines import GrainLoop, OscillationDrive
 from yade import O, utils, wrapper
 
@@ -162,3 +163,17 @@ def test_periods_of_the_cell_are_taken_and_an_axis_may_be_left_free():
 def test_material_numbers_are_checked_under_every_law(law, bad):
     with pytest.raises(ValueError, match="must"):
         GrainLoop(law=law, **bad)
+
+
+def test_a_run_that_fails_in_its_first_step_raises_every_time():
+    """YADE's O.run(n, True) returned as if nothing had happened in a third of such runs."""
+    raised = 0
+    for _ in range(12):
+        disks.new_scene(dt=1e-3)
+        disks.disk(0, 0), disks.disk(0.5, 0)
+        disks.loop()
+        grain_loop.use_grain_loop()
+        with pytest.raises(RuntimeError, match="overlap"):
+            O.run(5, True)
+        raised += 1
+    assert raised == 12

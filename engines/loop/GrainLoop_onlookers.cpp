@@ -1,6 +1,7 @@
 /// Who else may read or change bodies: GrainLoop writes all of them for those who may, and hears what they wrote.
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 #include "engines/loop/GrainLoop.hpp"
 #include "engines/seam/onlookers.hpp"
@@ -64,6 +65,9 @@ bool GrainLoop::Written::operator==(const Written& other) const { return std::me
 
 GrainLoop::Written GrainLoop::written_in(const yade::Body& body)
 {
+	if (!body.state || !body.shape)
+		throw std::runtime_error(
+			"GrainLoop: body " + std::to_string(body.id) + " has lost its shape or its state; put it back, or erase the body");
 	const yade::State& s = *body.state;
 	Written w{};
 	w.x = s.pos[0], w.y = s.pos[1], w.vx = s.vel[0], w.vy = s.vel[1], w.spin = s.angVel[2];
@@ -71,6 +75,7 @@ GrainLoop::Written GrainLoop::written_in(const yade::Body& body)
 	w.mass = s.mass, w.inertia = s.inertia[2];
 	w.radius = static_cast<const yade::Sphere&>(*body.shape).radius;
 	w.blocked = s.blockedDOFs, w.mask = body.groupMask, w.clump = body.clumpId, w.flags = body.flags;
+	w.material = body.material.get(), w.damped = s.isDamped;
 	return w;
 }
 
@@ -93,7 +98,6 @@ void GrainLoop::remember_what_is_written()
 void GrainLoop::hear_bodies()
 {
 	if (!open_) return;
-	open_ = false;
 	bool anew = false;
 	std::vector<std::size_t> moved;
 	for (std::size_t g = 0; g < written_.size(); ++g) {
@@ -117,6 +121,7 @@ void GrainLoop::hear_bodies()
 	if (anew) {
 		heard_motions_.clear();
 		build();
+		remember_what_is_written();
 		return;
 	}
 	if (moved.empty()) return;
@@ -128,19 +133,62 @@ void GrainLoop::hear_bodies()
 		if (now.x != then.x || now.y != then.y) grain.x = now.x, grain.y = now.y;
 		grain.vx = now.vx, grain.vy = now.vy, grain.spin = now.spin;
 		stepper_->put(moved[k], grain);
+		written_[moved[k]] = written_in(*(*scene->bodies)[map_.grain_id[moved[k]]]);
 	}
 	heard_motions_.clear();
 }
 
-/// A frozen disk that someone has set in motion becomes a body of its own, in the same step.
-void GrainLoop::release_what_moves()
+/// A frozen disk that someone has set in motion becomes a body of its own. A body with another mass or inertia, or one that comes to be
+/// frozen or is no longer, counts otherwise in its pairs. Either is heard in the same step, whose contacts still see the velocities
+/// of the step before, as on YADE's loop.
+void GrainLoop::read_anew_what_changed()
 {
-	const auto moves = [&](int id) { return scene->bodies->exists(id) && !loop::is_frozen(*(*scene->bodies)[id]->state); };
-	if (std::none_of(map_.frozen_id.begin(), map_.frozen_id.end(), moves)) return;
+	if (!set_in_motion() && !counts_otherwise()) return;
 	stepper_->take_back_body_forces();
 	sync();
+	std::map<int, loop::RigidBody> before;
+	for (std::size_t b = 0; b < map_.body_id.size(); ++b) before[map_.body_id[b]] = stepper_->bodies()[b];
 	build();
-	compute_body_forces();
+	for (std::size_t b = 0; b < map_.body_id.size(); ++b) {
+		const loop::RigidBody was = before[map_.body_id[b]];  // at rest where it was among the frozen
+		if (map_.body_id[b] >= 0) stepper_->set_velocity(b, was.vx, was.vy, was.spin);
+	}
+}
+
+bool GrainLoop::set_in_motion() const
+{
+	const auto moves = [&](int id) { return scene->bodies->exists(id) && !loop::is_frozen(*(*scene->bodies)[id]->state); };
+	return std::any_of(map_.frozen_id.begin(), map_.frozen_id.end(), moves);
+}
+
+GrainLoop::Counted GrainLoop::counted(int id) const
+{
+	const yade::State& state = *(*scene->bodies)[id]->state;
+	return { state.mass, state.inertia[2], loop::is_frozen(state), state.isDamped };
+}
+
+bool GrainLoop::counts_otherwise() const
+{
+	for (std::size_t b = 0; b < counted_.size(); ++b) {
+		if (map_.body_id[b] < 0) continue;
+		const Counted now = counted(map_.body_id[b]), then = counted_[b];
+		if (now.mass != then.mass || now.inertia != then.inertia || now.frozen != then.frozen || now.damped != then.damped)
+			return true;
+	}
+	return false;
+}
+
+/// Contacts follow the loop's own constants: a material that is changed or exchanged would change nothing.
+void GrainLoop::require_materials() const
+{
+	for (const KnownMaterial& known : materials_) {
+		const auto& now = static_cast<const yade::FrictMat&>(*known.material);
+		if (now.young == known.young && now.poisson == known.poisson && now.frictionAngle == known.friction_angle) continue;
+		throw std::runtime_error(
+			"GrainLoop: the constants of material " + std::to_string(now.id) + " ('" + now.label +
+			"') were changed, which its contacts do not follow; assign GrainLoop.friction, young, ... and then "
+			"call read(), or use YADE's loop");
+	}
 }
 
 }  // namespace graindrive

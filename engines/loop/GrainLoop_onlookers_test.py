@@ -114,6 +114,35 @@ def test_a_kinematic_engine_of_yades_moves_frozen_disks():
     assert_same_motion(both_loops(build, steps=1500), tolerance=1e-9)  # with impacts
 
 
+def speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, place):
+    """The speeds along x after each of ten steps; TranslationEngine stands at that place among YADE's four engines."""
+    disks.new_scene(dt=1e-4)
+    base, disk = disks.disk(0, 0, frozen=True), disks.disk(0, 0.99)
+    disks.loop(disks.hertz(), friction=0.4, gravity=(0, -10))
+    disks.run(3)  # they touch before the base moves
+    engine = wrapper.TranslationEngine(ids=[base], translationAxis=(1, 0, 0), velocity=0.1)
+    O.engines = O.engines[:place] + [engine] + O.engines[place:]
+    if loop == "grain":
+        grain_loop.use_grain_loop()
+    speeds = []
+    for _ in range(10):
+        O.step()
+        speeds.append(O.bodies[disk].state.vel[0])
+    return np.array(speeds)
+
+
+def test_what_is_written_before_the_contacts_acts_in_the_same_step_on_both_loops():
+    yade, grain = (speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, 2) for loop in ("yade", "grain"))
+    np.testing.assert_allclose(grain, yade, rtol=1e-9)
+    assert yade[0] > 0
+
+
+def test_what_is_written_behind_the_contacts_acts_one_step_earlier_than_on_yades_loop():
+    yade, grain = (speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, 3) for loop in ("yade", "grain"))
+    assert yade[0] == 0 and grain[0] > 0
+    np.testing.assert_allclose(grain[:-1], yade[1:], rtol=0.02)  # the normal force grows by a percent a step
+
+
 def test_one_step_shows_all_disks():
     _, free = bed()
     grain_loop.use_grain_loop()
@@ -178,3 +207,148 @@ def test_measures_make_nobody_write_all_bodies():
     shown = O.bodies[free[3]].state.pos[1]
     height = loop.positions[list(loop.ids).index(free[3])][1]
     assert shown == height
+
+
+@pytest.mark.parametrize("what", ["added", "erased"])
+def test_bodies_that_come_or_go_between_sync_and_read_do_so_as_on_yades_loop(what):
+    seen = []
+    for kind in ("yade", "grain"):
+        _, free = bed()
+        loop = grain_loop.use_grain_loop() if kind == "grain" else None
+        disks.run(100)
+        if loop:
+            loop.sync()
+        if what == "added":
+            disks.disk(0.5, 6.0)
+        else:
+            O.bodies.erase(free[1])
+        if loop:
+            loop.read()
+        disks.run(1500)
+        seen.append(np.array([[*b.state.pos, *b.state.vel] for b in O.bodies if b]))
+    np.testing.assert_allclose(seen[1], seen[0], rtol=0, atol=1e-9)  # with impacts
+
+
+@pytest.mark.parametrize("what", ["added", "erased"])
+def test_a_body_that_came_or_went_unsaid_stops_the_run_until_it_is_repaired(what):
+    _, free = bed()
+    loop = grain_loop.use_grain_loop()
+    disks.run(100)
+    if what == "added":
+        disks.disk(0.5, 6.0)
+    else:
+        O.bodies.erase(free[1])
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="read\\(\\) after"):
+            O.step()
+    loop.read()
+    disks.run(100)
+    assert O.bodies[free[0]].state.vel[1] == pytest.approx(-0.2, rel=1e-9)
+
+
+def held_clump_and_a_disk_that_falls_on_it(held, large):
+    disks.new_scene(dt=2e-4)
+    ident = disks.disk(0, 0, 1.0) if large else disks.clump([(-0.3, 0), (0.3, 0)], mass=2.0)[0]
+    O.bodies[ident].state.blockedDOFs = "xyzXYZ" if held else "zXY"
+    falling = disks.disk(0, 2.0, velocity=(0, -1))
+    disks.disk(20, 0), disks.disk(25, 0)
+    disks.loop(disks.hertz(gamma_n=500))
+    return ident, falling
+
+
+@pytest.mark.parametrize("held, large", [(True, False), (False, False), (False, True)])
+def test_a_body_that_is_held_or_freed_counts_so_in_the_damping_of_later_contacts(held, large):
+    rebounds = []
+    for loop in ("yade", "grain"):
+        ident, falling = held_clump_and_a_disk_that_falls_on_it(held, large)
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(50)
+        O.bodies[ident].state.blockedDOFs = "zXY" if held else "xyzXYZ"
+        disks.run(8000)
+        rebounds.append(O.bodies[falling].state.vel[1])
+    assert rebounds[0] > 0.1
+    assert rebounds[1] == pytest.approx(rebounds[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("by_runner", [False, True])
+def test_a_clump_that_becomes_heavier_answers_so_at_once(by_runner):
+    seen = []
+    for loop in ("yade", "grain"):
+        disks.new_scene(dt=1e-3)
+        ident, _ = disks.clump([(-0.3, 0), (0.3, 0)], at=(0, 5))
+        disks.disk(10, 0)
+        disks.loop()
+        O.forces.setPermF(ident, (1, 0, 0))
+        O.forces.setPermT(ident, (0, 0, 1))
+        heavier = f"s = O.bodies[{ident}].state; s.mass *= 10; s.inertia = s.inertia * 10"
+        if by_runner:
+            put_in(wrapper.PyRunner(command=heavier, firstIterRun=100, nDo=1, iterPeriod=1))
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(100)
+        if not by_runner:
+            exec(heavier)
+        disks.run(100)
+        seen.append(disks.everything())
+    assert_same_motion(seen)
+
+
+def test_a_body_that_shall_not_be_damped_is_refused_in_mid_run():
+    bed()
+    disks.engine("newton").damping = 0.3
+    grain_loop.use_grain_loop()
+    disks.run(10)
+    O.bodies[len(O.bodies) - 1].state.isDamped = False
+    with pytest.raises(ValueError, match="state.isDamped=False"):
+        O.engines[-1]()
+
+
+def test_a_body_without_shape_is_refused():
+    _, free = bed()
+    grain_loop.use_grain_loop()
+    disks.run(10)
+    shape, O.bodies[free[0]].shape = O.bodies[free[0]].shape, None
+    with pytest.raises(RuntimeError, match=f"body {free[0]} has lost its shape"):
+        O.engines[-1]()
+    O.bodies[free[0]].shape = shape
+    disks.run(10)
+
+
+def test_members_lie_beside_their_clump_wherever_that_is_put():
+    disks.new_scene(dt=1e-3, period=(12, 40, 12))
+    ident, members = disks.clump([(-0.3, 0), (0.3, 0)], at=(5, 5))
+    disks.disk(1, 1)
+    disks.loop()
+    grain_loop.use_grain_loop()
+    disks.run(10)
+    O.bodies[ident].state.pos += (12, 0, 0)
+    disks.run(300)  # a search wraps grains into the box
+    centre = O.bodies[ident].state.pos
+    for member, side in zip(members, (-1, 1)):
+        assert O.bodies[member].state.pos[0] - centre[0] == pytest.approx(0.3 * side, abs=1e-9)
+
+
+@pytest.mark.parametrize("start", ["frozen", "clump"])
+def test_contacts_of_the_step_that_sets_a_body_in_motion_do_not_feel_it_yet(start):
+    """YADE's forces of a step are computed before an engine behind them moves something."""
+
+    def build():
+        disks.new_scene(dt=1e-3)
+        if start == "frozen":
+            moved = disks.disk(0, 0, frozen=True)
+        else:
+            moved = disks.clump([(-0.2, 0), (0.2, 0)], at=(0, 0), radius=0.4)[0]
+            O.bodies[moved].state.blockedDOFs = "xyzXYZ"
+        disks.disk(1.5, 0, frozen=True)
+        disks.disk(0.75, 0.6 if start == "frozen" else 0.7)
+        disks.loop(disks.hertz(gamma_n=500, gamma_t=500), friction=0.5, gravity=(0, -10))
+        put_in(wrapper.TranslationEngine(ids=[moved], translationAxis=(1, 0, 0), velocity=0.5, dead=True))
+        O.engines = (
+            O.engines[:-2]
+            + [wrapper.PyRunner(command="O.engines[-2].dead = O.iter < 20", iterPeriod=1)]
+            + O.engines[-2:]
+        )
+
+    # Round-off of sums and of the clump's members, grown in 60 steps.
+    assert_same_motion(both_loops(build, steps=60), tolerance=1e-11)

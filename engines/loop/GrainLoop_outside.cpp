@@ -14,9 +14,8 @@ constexpr const char* kept_by_the_loop[] = { "springs", "wallSprings", "wallSett
 void GrainLoop::take_outside_forces()
 {
 	yade::ForceContainer& forces = scene->forces;
-	const long before = forces.syncCount;
 	forces.sync();
-	const bool added = forces.syncCount != before;
+	const bool added = forces.syncCount != forces_reset_at_;  // someone else may have summed them up before
 	if (!added && !pushed_) return;
 	std::vector<loop::Push> pushes;
 	for (loop::RigidBody& body : stepper_->bodies()) body.push_x = body.push_y = body.push_torque = 0;
@@ -24,6 +23,7 @@ void GrainLoop::take_outside_forces()
 		for (std::size_t id = 0; id < map_.grain_of_id.size(); ++id)
 			if (scene->bodies->exists(int(id))) push_with(int(id), forces.getForce(int(id)), forces.getTorque(int(id)), pushes);
 		forces.reset(scene->iter);
+		forces_reset_at_ = forces.syncCount;
 	}
 	stepper_->set_pushes(std::move(pushes));
 	pushed_ = added;

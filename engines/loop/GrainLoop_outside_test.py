@@ -140,3 +140,20 @@ def test_measures_and_drives_see_the_grains_forces_alone():
     grain_loop.use_grain_loop()
     disks.run(STEPS)
     assert drive.force == Vector3.Zero and drive.work == 0
+
+
+def test_forces_that_someone_has_summed_up_before_still_act():
+    seen = []
+    for loop in ("yade", "grain"):
+        disks.new_scene(dt=1e-3)
+        pushed = disks.disk(0, 0)
+        disks.disk(10, 0)
+        disks.loop()
+        looks = wrapper.PyRunner(command="O.forces.f(0, sync=True)", iterPeriod=1, initRun=True)
+        O.engines = O.engines[:-1] + [wrapper.ForceEngine(ids=[pushed], force=(1, 0, 0)), looks, O.engines[-1]]
+        if loop == "grain":
+            grain_loop.use_grain_loop()
+        disks.run(100)
+        seen.append(O.bodies[pushed].state.vel[0])
+    assert seen[0] > 0.1
+    assert seen[1] == pytest.approx(seen[0], rel=1e-12)

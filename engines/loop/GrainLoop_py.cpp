@@ -1,15 +1,29 @@
 /// Python binding of GrainLoop: its attributes, and grains and contacts as NumPy arrays.
 #include "engines/loop/GrainLoop_py.hpp"
 
+#include <algorithm>
+
 namespace graindrive {
 
 yade::Scene* scene_of_yade() { return py::extract<yade::Scene*>(py::import("yade").attr("O").attr("_sceneObj")); }
 
-loop::Stepper& running(GrainLoop& loop)
+namespace {
+
+/// YADE's scene, in which the loop must stand: another one answers for bodies that it does not move.
+yade::Scene* scene_with(const GrainLoop& loop)
 {
-	loop.scene = scene_of_yade();
-	return loop.stepper();
+	yade::Scene* scene = scene_of_yade();
+	const auto is_it = [&](const auto& engine) { return engine.get() == &loop; };
+	if (std::none_of(scene->engines.begin(), scene->engines.end(), is_it))
+		throw std::runtime_error(
+			"this GrainLoop does not stand in O.engines (O.load, O.reset and O.switchToScene bring others); ask "
+			"the one that is there, e.g. O.engines[-1]");
+	return scene;
 }
+
+}  // namespace
+
+Running::Running(GrainLoop& loop) : turn(loop.take_turn()), stepper((loop.scene = scene_with(loop), loop.stepper())) {}
 
 py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::vector<int>& grain_id)
 {
@@ -35,35 +49,39 @@ namespace {
 
 np::ndarray ids(GrainLoop& loop)
 {
-	running(loop);
+	const Running stepper(loop);
 	return array_of(loop.bodies().grain_id);
 }
 
 np::ndarray positions(GrainLoop& loop)
 {
-	std::vector<Real> xy(2 * running(loop).size());
-	running(loop).positions(xy.data());
+	const Running stepper(loop);
+	std::vector<Real> xy(2 * stepper->size());
+	stepper->positions(xy.data());
 	return array_of(xy, 2);
 }
 
 np::ndarray velocities(GrainLoop& loop)
 {
-	std::vector<Real> xy(2 * running(loop).size());
-	running(loop).velocities(xy.data());
+	const Running stepper(loop);
+	std::vector<Real> xy(2 * stepper->size());
+	stepper->velocities(xy.data());
 	return array_of(xy, 2);
 }
 
 np::ndarray spins(GrainLoop& loop)
 {
-	std::vector<Real> spin(running(loop).size());
-	running(loop).spins(spin.data());
+	const Running stepper(loop);
+	std::vector<Real> spin(stepper->size());
+	stepper->spins(spin.data());
 	return array_of(spin);
 }
 
 /// The same columns as `contact_table` of YADE's loop; forces act on j, as YADE's on body 2.
 py::dict contacts(GrainLoop& loop)
 {
-	const std::vector<loop::Contact> all = running(loop).contacts();
+	const Running stepper(loop);
+	const std::vector<loop::Contact> all = stepper->contacts();
 	py::dict table = contact_table(all, loop.bodies().grain_id);
 	std::vector<int> j;
 	for (const loop::Contact& c : all) j.push_back(loop.bodies().grain_id[c.second]);
@@ -75,36 +93,37 @@ py::dict contacts(GrainLoop& loop)
 py::dict present_contacts(GrainLoop& loop)
 {
 	constexpr int first_wall = -2;
-	loop::Stepper& stepper = running(loop);
-	const auto [pairs, walls] = stepper.look_between_steps();
+	const Running stepper(loop);
+	const auto [pairs, walls] = stepper->look_between_steps();
 	std::vector<loop::Contact> all = pairs;
 	const std::vector<int>& id = loop.bodies().grain_id;
 	std::vector<int> j;
 	for (const loop::Contact& c : all) j.push_back(id[c.second]);
 	for (const loop::Contact& c : walls) {
 		all.push_back(c);
-		j.push_back(first_wall - static_cast<int>(stepper.settings().walls[c.second].side));
+		j.push_back(first_wall - static_cast<int>(stepper->settings().walls[c.second].side));
 	}
 	py::dict table = contact_table(all, id);
 	table["j"] = array_of(j);
 	return table;
 }
 
-Real kinetic_energy(GrainLoop& loop) { return running(loop).kinetic_energy(); }
-Real kinetic_energy_on_step(GrainLoop& loop) { return running(loop).kinetic_energy_on_step(); }
+Real kinetic_energy(GrainLoop& loop) { return Running(loop)->kinetic_energy(); }
+Real kinetic_energy_on_step(GrainLoop& loop) { return Running(loop)->kinetic_energy_on_step(); }
 void begin_on_step(GrainLoop& loop)
 {
-	running(loop);
+	const Running stepper(loop);
 	loop.begin_on_step();
 }
 void require_scene(GrainLoop& loop)
 {
+	const GrainLoop::Turn turn = loop.take_turn();
 	loop.scene = scene_of_yade();
 	loop.require_scene();
 }
-long searches(GrainLoop& loop) { return running(loop).searches_done(); }
+long searches(GrainLoop& loop) { return Running(loop)->searches_done(); }
 
-std::string processor(GrainLoop& loop) { return name_of(running(loop).kernel_in_use().processor); }
+std::string processor(GrainLoop& loop) { return name_of(Running(loop)->kernel_in_use().processor); }
 
 py::list processors()
 {
@@ -120,6 +139,8 @@ void bind_loop()
 	np::initialize();
 	auto cls = seam::bind<GrainLoop>(GrainLoop::documentation);
 	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all disks into O.bodies.");
+	cls.def("showBodies", &GrainLoop::show_bodies,
+		"Write positions, velocities and spins of all disks into O.bodies, unless they are true already; after O.pause().");
 	cls.def("read", &GrainLoop::read,
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
 	cls.def("requireScene", require_scene,
@@ -127,7 +148,10 @@ void bind_loop()
 		"or\n"
 		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
 	const std::string of_contacts =
-		"Contacts of the last step as arrays: i, j, slipping, overlap [m], slip of i along z x n [m] ([N] with " +
+		"Contacts of the last step, all at the positions of its beginning, as YADE's are after a step; those at the present "
+		"positions\n"
+		"while a step is under way (in engines before GrainLoop). Arrays: i, j, slipping, overlap [m], slip of i along z x n [m] "
+	    "([N] with " +
 		laws::laws_that_remember_forces() +
 		",\nwhich remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).";

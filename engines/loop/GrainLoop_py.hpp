@@ -16,8 +16,18 @@ using GrainLoopClass = decltype(seam::bind<GrainLoop>(""));
 
 yade::Scene* scene_of_yade();
 
-/// The loop, ready to be asked. YADE tells an engine its scene at every step; a call from Python may come before the first one.
-loop::Stepper& running(GrainLoop& loop);
+/// The loop, ready to be asked, and kept between two steps meanwhile. YADE tells an engine its scene at every step; a call from Python
+/// may come before the first one.
+class Running {
+public:
+	explicit Running(GrainLoop& loop);
+	loop::Stepper* operator->() const { return &stepper; }
+	loop::Stepper& operator*() const { return stepper; }
+
+private:
+	GrainLoop::Turn turn;
+	loop::Stepper& stepper;
+};
 
 /// Columns that contacts between grains and with walls have in common: i, slipping, overlap, slip, point, normal, forces.
 py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::vector<int>& grain_id);

@@ -111,3 +111,25 @@ def test_a_disk_watched_later_is_written_at_every_step():
     assert list(loop.watched) == [free]
     row = list(loop.ids).index(free)
     assert tuple(loop.positions[row]) == tuple(O.bodies[free].state.pos)[:2]
+
+
+@pytest.mark.parametrize("change", ["frictionAngle = 0.1", "young *= 3", "poisson = 0.1"])
+def test_a_material_that_changes_is_refused_until_the_loop_is_told(change):
+    loop = crowd(friction=0.2)
+    disks.run(10)
+    exec(f"O.materials[0].{change}")
+    with pytest.raises(RuntimeError, match="the constants of material 0 .* were changed"):
+        O.engines[-1]()
+    loop.read()
+    disks.run(10)
+
+
+def test_friction_that_yades_helper_sets_is_refused():
+    from yade import utils
+
+    crowd(friction=0.2)
+    disks.run(10)
+    before = O.materials[0].frictionAngle
+    utils.setContactFriction(before / 2)
+    with pytest.raises(RuntimeError):
+        O.engines[-1]()

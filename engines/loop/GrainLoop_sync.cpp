@@ -36,8 +36,15 @@ void GrainLoop::write_bodies()
 			loop::write_state(stepper_->bodies()[b], map_.turned[b], *(*scene->bodies)[map_.body_id[b]]->state);
 }
 
+void GrainLoop::show_bodies()
+{
+	const Turn turn = take_turn();
+	if (!open_) sync();
+}
+
 void GrainLoop::sync()
 {
+	const Turn turn = take_turn();
 	if (!stepper_ || !scene || read_from_ != scene) return;
 	stepper_->take_back_body_forces();  // they have moved springs that are shown here
 	// YADE counts the windings of a periodic box. No sum over syncs: results must not depend on how often somebody looks.
@@ -49,8 +56,14 @@ void GrainLoop::sync()
 		const loop::Grain now = stepper_->grain(g);
 		yade::State& state = *(*scene->bodies)[map_.grain_id[g]]->state;
 		if (now.body != loop::free_grain && (map_.body_id[now.body] < 0 || map_.body_id[now.body] == map_.grain_id[g])) continue;
-		state.pos[0] = unwound(now.x, state.pos[0], periods[0]);
-		state.pos[1] = unwound(now.y, state.pos[1], periods[1]);
+		if (now.body == loop::free_grain) {
+			state.pos[0] = unwound(now.x, state.pos[0], periods[0]);
+			state.pos[1] = unwound(now.y, state.pos[1], periods[1]);
+		} else {  // beside its clump, as YADE has it
+			const Vector2r arm = stepper_->arm(g);
+			state.pos[0] = stepper_->bodies()[now.body].x + arm[0];
+			state.pos[1] = stepper_->bodies()[now.body].y + arm[1];
+		}
 		state.vel[0] = now.vx, state.vel[1] = now.vy;
 		state.angVel[2] = now.spin;
 		state.angMom[2] = now.spin * state.inertia[2];
@@ -64,6 +77,7 @@ void GrainLoop::sync()
 
 void GrainLoop::read()
 {
+	const Turn turn = take_turn();
 	keep_walls();
 	stepper_.reset();
 	open_ = false;
@@ -71,7 +85,9 @@ void GrainLoop::read()
 
 void GrainLoop::begin_on_step()
 {
+	const Turn turn = take_turn();
 	stepper().begin_on_step();
+	open_ = false;
 	write_bodies();
 }
 

@@ -12,6 +12,7 @@ constexpr int no_body = -1;
 
 void GrainLoop::look(SceneView& view, bool with_contacts)
 {
+	const Turn turn = take_turn();
 	view.grains.clear();
 	view.contacts.clear();
 	view.periods = periods;
@@ -63,6 +64,7 @@ int GrainLoop::body_index(int id)
 
 void GrainLoop::contacts_on(int id, std::vector<BodyContact>& contacts)
 {
+	const Turn turn = take_turn();
 	const int b = body_index(id);
 	const bool one_of_many = map_.body_id[b] != id;
 	const Vector3r centre = one_of_many ? (*scene->bodies)[id]->state->pos : Vector3r::Zero();
@@ -82,6 +84,7 @@ void GrainLoop::contacts_on(int id, std::vector<BodyContact>& contacts)
 
 Wrench GrainLoop::wrench_on(int id)
 {
+	const Turn turn = take_turn();
 	const int b = body_index(id);
 	Wrench sum;
 	if (map_.body_id[b] == id) {

@@ -18,6 +18,7 @@ void append(std::vector<Real>& numbers, const loop::Wall& w)
 
 std::vector<loop::Wall> GrainLoop::walls() const
 {
+	const Turn turn = take_turn();
 	if (stepper_) return stepper_->settings().walls;
 	std::vector<loop::Wall> all;
 	for (std::size_t k = 0; k + 8 < wallSettings.size(); k += 9) {
@@ -74,6 +75,7 @@ void GrainLoop::bring_loads()
 
 void GrainLoop::set_wall(const loop::Wall& wall)
 {
+	const Turn turn = take_turn();
 	if (stepper_) {
 		stepper_->set_wall(wall);
 		keep_walls();
@@ -89,6 +91,7 @@ void GrainLoop::set_wall(const loop::Wall& wall)
 
 void GrainLoop::remove_wall(loop::Side side)
 {
+	const Turn turn = take_turn();
 	if (stepper_) {
 		stepper_->remove_wall(side);
 		keep_walls();
@@ -103,6 +106,7 @@ void GrainLoop::remove_wall(loop::Side side)
 
 void GrainLoop::set_load(int id, const Vector3r& force)
 {
+	const Turn turn = take_turn();
 	body_index(id);  // a free disk becomes a body
 	if (map_.body_of_id[id] < 0)
 		throw std::invalid_argument(

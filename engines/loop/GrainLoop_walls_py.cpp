@@ -50,7 +50,8 @@ void remove_wall(GrainLoop& loop, const std::string& side) { loop.remove_wall(lo
 
 py::dict walls(GrainLoop& loop)
 {
-	const loop::Scene& scene = running(loop).settings();
+	const Running stepper(loop);
+	const loop::Scene& scene = stepper->settings();
 	py::dict all;
 	for (const loop::Wall& w : scene.walls) {
 		const Real length = loop::wall_length(scene, w);
@@ -68,20 +69,20 @@ py::dict walls(GrainLoop& loop)
 
 py::dict wall_contacts(GrainLoop& loop)
 {
-	const loop::Stepper& stepper = running(loop);
-	const std::vector<loop::Contact> all = stepper.wall_contacts();
+	const Running stepper(loop);
+	const std::vector<loop::Contact> all = stepper->wall_contacts();
 	py::dict table = contact_table(all, loop.bodies().grain_id);
 	py::list side;
-	for (const loop::Contact& c : all) side.append(std::string(loop::name_of(stepper.settings().walls[c.second].side)));
+	for (const loop::Contact& c : all) side.append(std::string(loop::name_of(stepper->settings().walls[c.second].side)));
 	table["side"] = side;
 	return table;
 }
 
-Real area_fraction(GrainLoop& loop) { return loop::area_fraction(running(loop).settings()); }
+Real area_fraction(GrainLoop& loop) { return loop::area_fraction(Running(loop)->settings()); }
 
 void set_load(GrainLoop& loop, int body, const Vector3r& force)
 {
-	running(loop);
+	const Running stepper(loop);
 	loop.set_load(body, force);
 }
 

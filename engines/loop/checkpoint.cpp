@@ -120,39 +120,13 @@ void visit_law(Unpacker& unpack, laws::ContactLaw& law)
 	}
 }
 
-namespace {
-
-template <class Visitor, class SceneType>
-void visit_scene(Visitor&& visit, SceneType& s)
-{
-	visit(s.grains);
-	visit(s.bodies);
-	visit(s.walls);
-	visit(s.box);
-	visit_law(visit, s.law);
-	visit(s.friction), visit(s.rotation), visit(s.gravity_x), visit(s.gravity_y), visit(s.dt), visit(s.precision),
-		visit(s.spin_response), visit(s.skin), visit(s.target_area_fraction), visit(s.damping), visit(s.damps_gravity);
-}
-
-}  // namespace
-
-template <class Visitor, class Self>
-void Stepper::visit_state(Visitor&& visit, Self& s)
-{
-	visit(s.rows), visit(s.index_of), visit(s.members), visit(s.body_fixed), visit(s.pairs.candidates), visit(s.searched_at);
-	visit(s.steps), visit(s.searches), visit(s.selections), visit(s.skin), visit(s.guards);
-	visit(s.travelled), visit(s.allowed), visit(s.pace), visit(s.selection_due);
-	visit(s.wall_touches), visit(s.moved_near_walls), visit(s.pushes);
-}
-
 void Stepper::save(const std::string& path, const std::string& companion)
 {
 	if (body_forces_known) throw std::runtime_error("checkpoint " + path + ": a step is under way; save between steps");
-	pairs.keep_slips();
 	Packer pack;
 	pack(companion);
-	visit_scene(pack, scene);
-	visit_state(pack, *this);
+	const State now = snapshot();
+	visit_state(pack, now);
 	pack(bool(energy_ledger()));
 	if (energy_ledger()) energy_ledger()->visit(pack);
 	write_checkpoint(path, pack.bytes);
@@ -165,25 +139,32 @@ std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, 
 	std::string words;
 	unpack(words);
 	if (companion) *companion = words;
-	Scene scene;
-	visit_scene(unpack, scene);
-	scene.threads = threads;
-	auto stepper = std::make_unique<Stepper>(scene);
-	visit_state(unpack, *stepper);
+	State saved;
+	visit_state(unpack, saved);
+	saved.scene.threads = threads;
+	auto stepper = std::make_unique<Stepper>(saved.scene);
+	stepper->state = std::move(saved);
+	stepper->resume();
 	bool tracked = false;
 	unpack(tracked);
 	stepper->track_energy(tracked);
 	if (tracked) stepper->energy_ledger()->visit(unpack);
-	stepper->resume();
 	return stepper;
 }
 
-/// What follows from the saved arrays.
+/// The state as it is between steps, springs among it.
+State Stepper::snapshot()
+{
+	if (state.selections > 0) pairs.keep_slips();
+	return state;
+}
+
+/// What follows from a state that was put in the place of another.
 void Stepper::resume()
 {
-	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
+	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[state.index_of[at]] = at;
 	measure_reach();
-	if (selections == 0) return;
+	if (state.selections == 0) return;
 	lay_out_pairs();
 	find_neighbours();
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace graindrive::loop {
 
@@ -132,7 +133,7 @@ void PairList::fill_slots(std::uint32_t n_free)
 		if (b < n_free) partnered[b] += partnered[b] < 255;
 	}
 	order_blocks(n_free);
-	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
+	const std::uint32_t force_bytes = this->force_bytes();
 	used_owned.assign(n_free, 0);
 	used_partnered.assign(n_free, 0);
 	slots.assign(n_free, ForceSlots{});
@@ -163,7 +164,7 @@ void PairList::fold_surplus(std::uint32_t next_place)
 		return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner;
 	};
 	std::stable_sort(surplus.begin(), surplus.end(), before);
-	const std::uint32_t force_bytes = precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
+	const std::uint32_t force_bytes = this->force_bytes();
 	folds.clear();
 	fold_sources.clear();
 	block_fold_end.assign(block_pair_end.size(), 0);
@@ -211,15 +212,33 @@ void PairList::put_back_slips()
 		if (place[c]) put(slips, place[c], candidates[c].slip);
 }
 
-void PairList::keep_early_slips()
+void PairList::keep_early_pairs()
 {
 	early_slips.clear();
 	for (const std::uint32_t c : early) early_slips.push_back(slip(c));
+	early_forces = bytes_of_forces(early_begin, early_end);
 }
 
-void PairList::put_back_early_slips()
+void PairList::put_back_early_pairs()
 {
 	for (std::size_t k = 0; k < early.size(); ++k) put(slips, place[early[k]], early_slips[k]);
+	put_back_forces(early_begin, early_forces);
+}
+
+std::size_t PairList::force_bytes() const
+{
+	return precision == Precision::double_ ? sizeof(PairForce<double>) : sizeof(PairForce<float>);
+}
+
+PairList::Bytes PairList::bytes_of_forces(std::size_t begin, std::size_t end) const
+{
+	const char* first = reinterpret_cast<const char*>(forces.data());
+	return { first + begin * force_bytes(), first + end * force_bytes() };
+}
+
+void PairList::put_back_forces(std::size_t begin, const Bytes& bytes)
+{
+	std::memcpy(reinterpret_cast<char*>(forces.data()) + begin * force_bytes(), bytes.data(), bytes.size());
 }
 
 void PairList::put(AlignedVector<double>& list, std::uint32_t at, double number)

@@ -26,7 +26,8 @@ struct Reach {
 
 class PairList {
 public:
-	std::vector<Candidate> candidates;
+	/// For pairs that someone else keeps, with their springs.
+	explicit PairList(std::vector<Candidate>& pairs) : candidates(pairs) {}
 
 	/// Selects the candidates nearer than the sum of their reaches.
 	PairCounts select(const GrainRow* rows, const Box& box, const std::vector<Reach>& reach);
@@ -36,9 +37,14 @@ public:
 	/// Brings the tangential springs of the selected pairs back into the candidates.
 	void keep_slips();
 	void put_back_slips();  ///< and into the kernels' memory again
-	/// The same for the early pairs alone, which cost little.
-	void keep_early_slips();
-	void put_back_early_slips();
+	/// Springs and forces of the early pairs alone, which cost little.
+	void keep_early_pairs();
+	void put_back_early_pairs();
+	bool is_early(std::uint32_t candidate) const { return place[candidate] >= early_begin; }
+	/// Forces as they stand in memory, and back.
+	using Bytes = std::vector<char>;
+	Bytes forces_in_memory() const { return bytes_of_forces(0, forces.size()); }
+	void put_back_forces(const Bytes& bytes) { put_back_forces(0, bytes); }
 	void point(KernelData& data);
 
 	std::vector<SweepRange> sweeps;  ///< one per thread
@@ -58,6 +64,8 @@ public:
 	double slip(std::uint32_t candidate) const;
 
 private:
+	std::vector<Candidate>& candidates;
+
 	void put(AlignedVector<double>& list, std::uint32_t at, double number);
 
 	Precision precision = Precision::double_;
@@ -74,10 +82,14 @@ private:
 		bool partner;
 	};
 	std::vector<Surplus> surplus;
-	std::vector<double> early_slips;                                         // as keep_early_slips found them
+	std::vector<double> early_slips;  // as keep_early_pairs found them
+	Bytes early_forces;
 	std::vector<std::uint32_t> early, with_members;                          // candidates
 	std::vector<std::uint8_t> owned, partnered, used_owned, used_partnered;  // by grain: pairs selected, slots filled
 
+	std::size_t force_bytes() const;
+	Bytes bytes_of_forces(std::size_t begin, std::size_t end) const;
+	void put_back_forces(std::size_t begin, const Bytes& bytes);
 	void place_pairs(const GrainRow* rows, std::uint32_t n_free, int threads, std::uint32_t dummy_row);
 	std::uint32_t pad(std::uint32_t places, PairLink dummy);
 	void order_blocks(std::uint32_t n_free);

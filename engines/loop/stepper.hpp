@@ -8,11 +8,12 @@
 #include "engines/loop/energy_ledger.hpp"
 #include "engines/loop/pair_geometry.hpp"
 #include "engines/loop/pair_list.hpp"
+#include "engines/loop/state.hpp"
 #include "engines/loop/thread_team.hpp"
 
 namespace graindrive::loop {
 
-/// A contact: forces as of the last step, where the grains are now. Forces act on `first`; on `second` they are opposite.
+/// A contact, all of it at the moment of its forces: the beginning of the last step. Forces act on `first`; on `second` they are opposite.
 struct Contact {
 	std::uint32_t first, second;  ///< indices in `Scene::grains`
 	double n_x, n_y;              ///< from first to second
@@ -45,24 +46,11 @@ struct Touch {
 	bool slipping;            ///< Coulomb's bound is active
 };
 
-/// A force and a torque from outside on a free grain.
-struct Push {
-	std::uint32_t grain;  ///< index in `Scene::grains`
-	double x, y, torque;  ///< [N], [N m]
-};
-
-/// How a step is checked while it runs.
-struct Guards {
-	long every = 100;              ///< steps between two looks at every pair
-	double largest_overlap = 0.1;  ///< of the smaller radius [-]
-	bool bounded = false;          ///< the caller says where grains may be, below; else a base says how far they may fall
-	double x_low = 0, y_low = 0, x_high = 0, y_high = 0;  ///< [m]; no bound along an axis where both are equal
-};
-
 class Stepper {
 public:
 	/// @throws std::invalid_argument for a scene that cannot be run: says which number, the rule and the way out
 	explicit Stepper(const Scene& scene);
+	Stepper(const Stepper&) = delete;
 
 	/// Goes n steps on. @throws std::runtime_error when a guard trips, with step, grain and likely cause
 	void step(long n = 1);
@@ -82,19 +70,21 @@ public:
 	/// A loop that goes on as the saved one would have, to the last bit, on any number of threads.
 	static std::unique_ptr<Stepper> restore(const std::string& path, int threads = 1, std::string* companion = nullptr);
 
-	long steps_done() const { return steps; }
-	double time() const { return steps * scene.dt; }
-	const Scene& settings() const { return scene; }
-	double& target_area_fraction() { return scene.target_area_fraction; }
-	std::vector<RigidBody>& bodies() { return scene.bodies; }
+	long steps_done() const { return state.steps; }
+	double time() const { return state.steps * state.scene.dt; }
+	const Scene& settings() const { return state.scene; }
+	double& target_area_fraction() { return state.scene.target_area_fraction; }
+	std::vector<RigidBody>& bodies() { return state.scene.bodies; }
 
-	std::size_t size() const { return scene.grains.size(); }
+	std::size_t size() const { return state.scene.grains.size(); }
 	Grain grain(std::size_t index) const;
 	Vector2r arm(std::size_t member) const;  ///< of a body's grain, from the body's centre [m]
 	void positions(double* xy) const;        ///< size() pairs, in the order of `Scene::grains`
 	void velocities(double* xy) const;
 	void spins(double* spin) const;
-	std::vector<Contact> contacts() const;
+	/// Contacts of the last step, at its beginning; those at the present positions while a step is under way, or where pairs have been
+	/// laid out anew since.
+	std::vector<Contact> contacts();
 	/// Contacts at the present positions, before anything moves: the forces that the next step will find, to the last bit.
 	std::vector<Contact> present_contacts();
 	/// The same and `wall_contacts`, for someone who looks between steps: no step is then under way if none was before.
@@ -109,6 +99,8 @@ public:
 	void set_pushes(std::vector<Push> on_grains);
 	/// Gives a grain another place, velocity and spin, between two steps.
 	void put(std::size_t index, const Grain& grain);
+	/// Gives a body and its members another velocity, between two steps.
+	void set_velocity(std::size_t body, double vx, double vy, double spin);
 	/// Goes on with law, friction, gravity, precision, threads and skin of `wanted`. Springs stay while the kind of law does.
 	/// @throws std::invalid_argument as the constructor, and for another physics while energy is tracked
 	void change(const Scene& wanted);
@@ -123,7 +115,7 @@ public:
 	void set_wall(const Wall& wall);
 	void remove_wall(Side side);
 	void set_wall_springs(const std::vector<WallTouch>& springs);  ///< before the first step
-	const std::vector<WallTouch>& wall_springs() const { return wall_touches; }
+	const std::vector<WallTouch>& wall_springs() const { return state.wall_touches; }
 	std::vector<Contact> wall_contacts() const;  ///< `second` is the wall, n is outward, and forces act on the grain
 
 	/// Opens or closes the energy ledger; it costs a plain pass over all contacts at every step.
@@ -135,66 +127,50 @@ public:
 	double kinetic_energy_on_step();  ///< the same with the velocities of the whole step [J]
 
 	const Kernel& kernel_in_use() const { return kernel; }
-	long searches_done() const { return searches; }
-	long selections_done() const { return selections; }
+	long searches_done() const { return state.searches; }
+	long selections_done() const { return state.selections; }
 	std::size_t pairs_selected() const;
-	Guards& guarding() { return guards; }
+	Guards& guarding() { return state.guards; }
 	/// What guards call the grains, by index, and the step that this loop began with; by default indices and 0.
 	void speak_of(std::vector<int> names, long first_step) { grain_names = std::move(names), spoken_first_step = first_step; }
 
 private:
-	Scene scene;
+	State state;
+
+	// What follows from it.
 	Kernel kernel;
 	KernelData data{};
 	laws::Laws::Any<float> law_in_float;  // of single precision
 	std::unique_ptr<ThreadTeam> team;
-	AlignedVector<GrainRow> rows;         // free grains by cell, members of bodies, two dummies
-	std::vector<std::uint32_t> index_of;  // place in memory -> index in Scene::grains
-	std::vector<std::uint32_t> row_of;    // and back
+	std::vector<std::uint32_t> row_of;  // index in Scene::grains -> place in memory
 	std::uint32_t n_free = 0, n_grains = 0;
-	std::vector<double> mass;  // by index
-	PairList pairs;
+	PairList pairs{ state.candidates };
 	CellGrid grid;
-	long steps = 0, searches = 0, selections = 0;
-
-	struct Member {
-		double x, y;              // from the body's centre at angle 0 [m]
-		double shift_x, shift_y;  // from the body's image to the one in the box [m]
-		int body;
-	};
-	std::vector<Member> members;
 	std::vector<std::uint32_t> body_members;  // first member of each body
 	std::vector<double> body_reach;           // farthest point of each body from its centre [m]
-	std::vector<char> body_fixed;
-
-	double typical_diameter = 0, largest_free_radius = 0, skin = 0;
-	std::vector<double> searched_at;  // x, y of grains at the last search
-
-	// Blocks of free grains, then bodies: each keeps its own budget of motion (stepper_budgets.cpp).
-	std::vector<double> travelled, allowed;                           // bound on the way since the last selection, its limit [m]
-	std::vector<double> speed;                                        // bounds at the last selection [m/s]
+	double typical_diameter = 0, largest_free_radius = 0;
+	std::vector<double> speed;  // bounds at the last selection, by block, then by body [m/s]
 	std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;  // those with candidates in common
-	std::vector<char> thread_beyond;                                  // by thread: a block went beyond its limit in the last step
-	bool selection_due = true;
-	double pace = 40;  // steps between selections that budgets are made for
+
+	// Within a step.
+	std::vector<char> thread_beyond;  // by thread: a block went beyond its limit
 	std::exception_ptr failure;
+	AlignedVector<OutsideForce> outside;  // of damped scenes: by row
+	bool body_forces_known = false;
+	bool laid_out_since_forces = false;
+	double drifted = 0;  // for how long grains have moved since their forces were computed [s]
+
+	std::vector<Spring> given_springs;  // until the first search
+	std::vector<int> grain_names;       // for guards; none: indices
+	long spoken_first_step = 0;
 
 	void set_up_kernels();
 	void arrange_rows();
 	void measure_reach();
 	void place_members(std::size_t body);
-	AlignedVector<OutsideForce> outside;  // of damped scenes: by row
-	std::vector<WallTouch> wall_touches;  // near walls: by wall, then by grain
-	double moved_near_walls = std::numeric_limits<double>::infinity();
-	std::vector<Spring> given_springs;  // until the first search
-	std::vector<Push> pushes;
-	bool body_forces_known = false;
-	Guards guards;
-	std::vector<int> grain_names;  // none: indices
-	long spoken_first_step = 0;
-
-	template <class Visitor, class Self>
-	static void visit_state(Visitor&& visit, Self& stepper);
+	State snapshot();
+	void go_back_to(const State& before);
+	void half_step(double spring_time, double drift);
 	void resume();
 	void advance(int rank, long n);
 	bool one_step(int rank, bool early_pairs_done);
@@ -237,7 +213,10 @@ private:
 	double farthest_before_selection() const;
 	void spend_budgets();
 	double slipping_bound() const;
-	double overlap_of(const Candidate& pair) const;
+	std::vector<Contact> contacts_in_memory() const;
+	GrainRow row_before(double time, std::uint32_t at) const;
+	double moved_since_forces(std::uint32_t candidate) const;
+	double overlap_at_forces(std::uint32_t candidate) const;
 	ForceParts parts(const PairForce<double>& force) const;
 	bool slips(const ForceParts& force, double remembered) const;
 

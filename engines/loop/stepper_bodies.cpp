@@ -8,10 +8,10 @@ namespace graindrive::loop {
 
 void Stepper::collect_forces(std::size_t b)
 {
-	RigidBody& body = scene.bodies[b];
+	RigidBody& body = state.scene.bodies[b];
 	body.force_x = body.force_y = body.torque = 0;
 	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
-		const GrainRow& row = rows[n_free + m];
+		const GrainRow& row = state.rows[n_free + m];
 		double x = 0, y = 0, friction = 0, less = 0;
 		for (std::uint32_t s = pairs.member_begin[m]; s < pairs.member_begin[m + 1]; ++s) {
 			const PairForce<double> force = pairs.force(pairs.member_shares[s].candidate);
@@ -21,13 +21,13 @@ void Stepper::collect_forces(std::size_t b)
 			friction += force.friction;
 			less += force.normal;
 		}
-		const double arm_x = row.x - members[m].shift_x - body.x, arm_y = row.y - members[m].shift_y - body.y;
+		const double arm_x = row.x - state.members[m].shift_x - body.x, arm_y = row.y - state.members[m].shift_y - body.y;
 		body.force_x += x;
 		body.force_y += y;
 		body.torque += arm_x * y - arm_y * x + row.radius * friction;
 		if (at_contact_point()) body.torque -= less;
 	}
-	if (!wall_touches.empty()) add_wall_forces(b);
+	if (!state.wall_touches.empty()) add_wall_forces(b);
 }
 
 /// What responds, with damping.
@@ -49,7 +49,7 @@ void Stepper::kick(RigidBody& body) const
 
 void Stepper::move_body(std::size_t b)
 {
-	RigidBody& body = scene.bodies[b];
+	RigidBody& body = state.scene.bodies[b];
 	data.damping != 0 ? kick_damped(body) : kick(body);
 	body.x += body.vx * data.drift;
 	body.y += body.vy * data.drift;
@@ -57,14 +57,21 @@ void Stepper::move_body(std::size_t b)
 	place_members(b);
 }
 
+void Stepper::set_velocity(std::size_t b, double vx, double vy, double spin)
+{
+	RigidBody& body = state.scene.bodies[b];
+	body.vx = vx, body.vy = vy, body.spin = spin;
+	place_members(b);
+}
+
 /// r_i = X + R(angle) b_i,  v_i = V + w x (r_i - X)
 void Stepper::place_members(std::size_t b)
 {
-	const RigidBody& body = scene.bodies[b];
+	const RigidBody& body = state.scene.bodies[b];
 	const double c = std::cos(body.angle), s = std::sin(body.angle);
 	for (std::uint32_t m = body_members[b]; m < body_members[b + 1]; ++m) {
-		const Member& member = members[m];
-		GrainRow& row = rows[n_free + m];
+		const Member& member = state.members[m];
+		GrainRow& row = state.rows[n_free + m];
 		const double arm_x = c * member.x - s * member.y, arm_y = s * member.x + c * member.y;
 		row.x = body.x + arm_x + member.shift_x;
 		row.y = body.y + arm_y + member.shift_y;

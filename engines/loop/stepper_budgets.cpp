@@ -21,30 +21,30 @@ constexpr double largest_budget = 0.25;                // of the skin
 /// Index of a grain's block or body among the budgets.
 std::uint32_t Stepper::party_of(std::uint32_t row) const
 {
-	return row < n_free ? row / grains_per_block : n_blocks() + members[row - n_free].body;
+	return row < n_free ? row / grains_per_block : n_blocks() + state.members[row - n_free].body;
 }
 
 double Stepper::smallest_budget() const { return smallest * typical_diameter; }
 
 void Stepper::measure_speeds()
 {
-	speed.assign(n_blocks() + scene.bodies.size(), 0);
+	speed.assign(n_blocks() + state.scene.bodies.size(), 0);
 	for (std::uint32_t i = 0; i < n_free; ++i) {
 		double& highest = speed[i / grains_per_block];
-		highest = std::max(highest, rows[i].vx * rows[i].vx + rows[i].vy * rows[i].vy);
+		highest = std::max(highest, state.rows[i].vx * state.rows[i].vx + state.rows[i].vy * state.rows[i].vy);
 	}
 	for (std::uint32_t b = 0; b < n_blocks(); ++b) speed[b] = std::sqrt(speed[b]);
-	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-		const RigidBody& body = scene.bodies[b];
-		if (!body_fixed[b]) speed[n_blocks() + b] = std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b];
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
+		const RigidBody& body = state.scene.bodies[b];
+		if (!state.body_fixed[b]) speed[n_blocks() + b] = std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b];
 	}
 }
 
 void Stepper::find_neighbours()
 {
 	neighbours.clear();
-	std::vector<std::uint32_t> met(n_blocks() + scene.bodies.size(), 0);  // 1 + the last that met this one
-	for (const Candidate& pair : pairs.candidates) {
+	std::vector<std::uint32_t> met(n_blocks() + state.scene.bodies.size(), 0);  // 1 + the last that met this one
+	for (const Candidate& pair : state.candidates) {
 		const std::uint32_t one = party_of(pair.first), other = party_of(pair.second);
 		if (one == other || met[other] == one + 1) continue;
 		met[other] = one + 1;
@@ -60,12 +60,13 @@ void Stepper::allow_travel()
 		expected[pair.first] = std::max(expected[pair.first], speed[pair.second]);
 		expected[pair.second] = std::max(expected[pair.second], speed[pair.first]);
 	}
-	const double least = smallest_budget(), most = largest_budget * skin;
-	travelled.resize(speed.size());
-	allowed.resize(speed.size());
-	for (std::size_t p = 0; p < allowed.size(); ++p) allowed[p] = std::min(std::max(expected[p] * scene.dt * pace, least), most);
-	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-		if (body_fixed[b]) allowed[n_blocks() + b] = 0;
+	const double least = smallest_budget(), most = largest_budget * state.skin;
+	state.travelled.resize(speed.size());
+	state.allowed.resize(speed.size());
+	for (std::size_t p = 0; p < state.allowed.size(); ++p)
+		state.allowed[p] = std::min(std::max(expected[p] * state.scene.dt * state.pace, least), most);
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
+		if (state.body_fixed[b]) state.allowed[n_blocks() + b] = 0;
 }
 
 /// Sets how many steps to aim at between selections. A pair that is selected and does not touch costs at every step, a selection once:
@@ -76,8 +77,8 @@ void Stepper::allow_travel()
 /// select. Only the speed depends on it, no bit of a result.
 void Stepper::choose_pace(const PairCounts& counts)
 {
-	const double more_per_step = 2 * std::max<double>(counts.selected - counts.by_half_budgets, 1) / pace;
-	pace = std::clamp(std::sqrt(selecting_cost * pairs.candidates.size() / more_per_step), fewest_steps, most_steps);
+	const double more_per_step = 2 * std::max<double>(counts.selected - counts.by_half_budgets, 1) / state.pace;
+	state.pace = std::clamp(std::sqrt(selecting_cost * state.candidates.size() / more_per_step), fewest_steps, most_steps);
 }
 
 /// How far from its place at the last search any grain can be before the next selection.
@@ -85,8 +86,8 @@ double Stepper::farthest_before_selection() const
 {
 	double farthest = 0;
 	for (std::uint32_t i = 0; i < n_grains; ++i) {
-		const double dx = rows[i].x - searched_at[2 * i], dy = rows[i].y - searched_at[2 * i + 1];
-		farthest = std::max(farthest, std::sqrt(dx * dx + dy * dy) + allowed[party_of(i)]);
+		const double dx = state.rows[i].x - state.searched_at[2 * i], dy = state.rows[i].y - state.searched_at[2 * i + 1];
+		farthest = std::max(farthest, std::sqrt(dx * dx + dy * dy) + state.allowed[party_of(i)]);
 	}
 	return farthest;
 }
@@ -94,22 +95,22 @@ double Stepper::farthest_before_selection() const
 /// After a step: what blocks have travelled the kernels know; here bodies.
 void Stepper::spend_budgets()
 {
-	for (const char beyond : thread_beyond) selection_due |= beyond != 0;
-	for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-		if (body_fixed[b]) continue;
-		const RigidBody& body = scene.bodies[b];
-		double& way = travelled[n_blocks() + b];
+	for (const char beyond : thread_beyond) state.selection_due |= beyond != 0;
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
+		if (state.body_fixed[b]) continue;
+		const RigidBody& body = state.scene.bodies[b];
+		double& way = state.travelled[n_blocks() + b];
 		way += (std::hypot(body.vx, body.vy) + std::abs(body.spin) * body_reach[b]) * data.drift;
-		selection_due |= way > allowed[n_blocks() + b];
+		state.selection_due |= way > state.allowed[n_blocks() + b];
 	}
 }
 
 void Stepper::point_at_lists()
 {
 	pairs.point(data);
-	data.rows = rows.data();
-	data.travelled = travelled.data();
-	data.allowed = allowed.data();
+	data.rows = state.rows.data();
+	data.travelled = state.travelled.data();
+	data.allowed = state.allowed.data();
 }
 
 }  // namespace graindrive::loop

@@ -50,54 +50,57 @@ struct SpringBook {
 
 void Stepper::search()
 {
-	const double wanted = 2 * *std::max_element(speed.begin(), speed.end()) * scene.dt * steps_between_searches;
-	skin = scene.skin > 0 ? scene.skin : std::clamp(wanted, smallest_skin * typical_diameter, largest_skin * typical_diameter);
+	const double wanted = 2 * *std::max_element(speed.begin(), speed.end()) * state.scene.dt * steps_between_searches;
+	state.skin = state.scene.skin > 0 ? state.scene.skin
+	                                  : std::clamp(wanted, smallest_skin * typical_diameter, largest_skin * typical_diameter);
 	for (std::uint32_t i = 0; i < n_free; ++i) {
-		if (scene.box.periodic_x) rows[i].x = into_box(rows[i].x, scene.box.x_low, scene.box.x_high);
-		if (scene.box.periodic_y) rows[i].y = into_box(rows[i].y, scene.box.y_low, scene.box.y_high);
+		if (state.scene.box.periodic_x)
+			state.rows[i].x = into_box(state.rows[i].x, state.scene.box.x_low, state.scene.box.x_high);
+		if (state.scene.box.periodic_y)
+			state.rows[i].y = into_box(state.rows[i].y, state.scene.box.y_low, state.scene.box.y_high);
 	}
-	for (std::size_t m = 0; m < members.size(); ++m) {
-		GrainRow& row = rows[n_free + m];
+	for (std::size_t m = 0; m < state.members.size(); ++m) {
+		GrainRow& row = state.rows[n_free + m];
 		const double x = row.x, y = row.y;
-		if (scene.box.periodic_x) row.x = into_box(x, scene.box.x_low, scene.box.x_high);
-		if (scene.box.periodic_y) row.y = into_box(y, scene.box.y_low, scene.box.y_high);
-		members[m].shift_x += row.x - x;
-		members[m].shift_y += row.y - y;
+		if (state.scene.box.periodic_x) row.x = into_box(x, state.scene.box.x_low, state.scene.box.x_high);
+		if (state.scene.box.periodic_y) row.y = into_box(y, state.scene.box.y_low, state.scene.box.y_high);
+		state.members[m].shift_x += row.x - x;
+		state.members[m].shift_y += row.y - y;
 	}
 	sort_rows();
-	searched_at.resize(2 * n_grains);
+	state.searched_at.resize(2 * n_grains);
 	for (std::uint32_t i = 0; i < n_grains; ++i) {
-		searched_at[2 * i] = rows[i].x;
-		searched_at[2 * i + 1] = rows[i].y;
+		state.searched_at[2 * i] = state.rows[i].x;
+		state.searched_at[2 * i + 1] = state.rows[i].y;
 	}
-	++searches;
+	++state.searches;
 }
 
 void Stepper::sort_rows()
 {
-	grid.lay(rows.data(), n_free, scene.box, 2 * largest_free_radius + skin);
+	grid.lay(state.rows.data(), n_free, state.scene.box, 2 * largest_free_radius + state.skin);
 	std::vector<std::uint32_t> order;
-	grid.sort(rows.data(), n_free, order);
+	grid.sort(state.rows.data(), n_free, order);
 	std::vector<std::uint32_t> new_row(n_grains);
-	AlignedVector<GrainRow> sorted(rows);
-	std::vector<std::uint32_t> sorted_index(index_of);
+	AlignedVector<GrainRow> sorted(state.rows);
+	std::vector<std::uint32_t> sorted_index(state.index_of);
 	for (std::uint32_t at = 0; at < n_grains; ++at) {
 		const std::uint32_t from = at < n_free ? order[at] : at;
 		new_row[from] = at;
-		sorted[at] = rows[from];
-		sorted_index[at] = index_of[from];
+		sorted[at] = state.rows[from];
+		sorted_index[at] = state.index_of[from];
 	}
-	rows.swap(sorted);
-	index_of.swap(sorted_index);
-	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[index_of[at]] = at;
-	const SpringBook springs(pairs.candidates, new_row, given_springs, row_of, n_grains);
+	state.rows.swap(sorted);
+	state.index_of.swap(sorted_index);
+	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[state.index_of[at]] = at;
+	const SpringBook springs(state.candidates, new_row, given_springs, row_of, n_grains);
 	given_springs.clear();
 	std::vector<int> body_of(n_grains, free_grain);
-	for (std::size_t m = 0; m < members.size(); ++m) body_of[n_free + m] = members[m].body;
-	find_candidates(
-		{ rows.data(), n_free, n_grains, body_of.data(), &scene.bodies, &body_fixed, &scene.box, skin, largest_free_radius },
-		grid, pairs.candidates);
-	for (Candidate& pair : pairs.candidates) pair.slip = springs.of(pair.first, pair.second);
+	for (std::size_t m = 0; m < state.members.size(); ++m) body_of[n_free + m] = state.members[m].body;
+	find_candidates({ state.rows.data(), n_free, n_grains, body_of.data(), &state.scene.bodies, &state.body_fixed,
+						&state.scene.box, state.skin, largest_free_radius },
+		grid, state.candidates);
+	for (Candidate& pair : state.candidates) pair.slip = springs.of(pair.first, pair.second);
 }
 
 }  // namespace graindrive::loop

@@ -106,7 +106,7 @@ double area_fraction(const Scene& scene)
 
 void Stepper::set_wall(const Wall& wall)
 {
-	Scene changed = scene;
+	Scene changed = state.scene;
 	const auto same_side = [&](const Wall& other) { return other.side == wall.side; };
 	const auto at = std::find_if(changed.walls.begin(), changed.walls.end(), same_side);
 	if (at == changed.walls.end())
@@ -114,30 +114,30 @@ void Stepper::set_wall(const Wall& wall)
 	else
 		*at = wall;
 	check_walls(changed);
-	scene.walls = changed.walls;
-	moved_near_walls = HUGE_VAL;
+	state.scene.walls = changed.walls;
+	state.moved_near_walls = HUGE_VAL;
 }
 
 void Stepper::remove_wall(Side side)
 {
-	for (std::uint32_t w = 0; w < scene.walls.size(); ++w) {
-		if (scene.walls[w].side != side) continue;
-		scene.walls.erase(scene.walls.begin() + w);
+	for (std::uint32_t w = 0; w < state.scene.walls.size(); ++w) {
+		if (state.scene.walls[w].side != side) continue;
+		state.scene.walls.erase(state.scene.walls.begin() + w);
 		std::vector<WallTouch> kept;
-		for (WallTouch touch : wall_touches) {
+		for (WallTouch touch : state.wall_touches) {
 			if (touch.wall == w) continue;
 			touch.wall -= touch.wall > w;
 			kept.push_back(touch);
 		}
-		wall_touches.swap(kept);
+		state.wall_touches.swap(kept);
 		return;
 	}
 }
 
 void Stepper::set_wall_springs(const std::vector<WallTouch>& springs)
 {
-	wall_touches = springs;
-	std::sort(wall_touches.begin(), wall_touches.end(),
+	state.wall_touches = springs;
+	std::sort(state.wall_touches.begin(), state.wall_touches.end(),
 		[](const WallTouch& a, const WallTouch& b) { return a.wall != b.wall ? a.wall < b.wall : a.grain < b.grain; });
 }
 
@@ -145,27 +145,27 @@ void Stepper::set_wall_springs(const std::vector<WallTouch>& springs)
 void Stepper::list_wall_touches()
 {
 	const double reach = reach_of_list * typical_diameter;
-	if (moved_near_walls <= reach) return;
+	if (state.moved_near_walls <= reach) return;
 	std::vector<WallTouch> listed;
-	auto known = wall_touches.begin();
-	for (std::uint32_t w = 0; w < scene.walls.size(); ++w) {
-		const Wall& wall = scene.walls[w];
+	auto known = state.wall_touches.begin();
+	for (std::uint32_t w = 0; w < state.scene.walls.size(); ++w) {
+		const Wall& wall = state.scene.walls[w];
 		for (std::uint32_t g = 0; g < n_grains; ++g) {
-			while (known != wall_touches.end() && (known->wall < w || (known->wall == w && known->grain < g))) ++known;
-			if (scene.grains[g].body != free_grain && body_fixed[scene.grains[g].body]) continue;
-			const GrainRow& row = rows[row_of[g]];
+			while (known != state.wall_touches.end() && (known->wall < w || (known->wall == w && known->grain < g))) ++known;
+			if (state.scene.grains[g].body != free_grain && state.body_fixed[state.scene.grains[g].body]) continue;
+			const GrainRow& row = state.rows[row_of[g]];
 			if (placement(row, wall).overlap < -reach) continue;
-			const bool seen = known != wall_touches.end() && known->wall == w && known->grain == g;
+			const bool seen = known != state.wall_touches.end() && known->wall == w && known->grain == g;
 			listed.push_back({ w, g, seen ? known->slip : 0 });
 		}
 	}
-	wall_touches.swap(listed);
-	moved_near_walls = 0;
+	state.wall_touches.swap(listed);
+	state.moved_near_walls = 0;
 }
 
 Placement Stepper::placement_of(const WallTouch& touch) const
 {
-	return placement(rows[row_of[touch.grain]], scene.walls[touch.wall]);
+	return placement(state.rows[row_of[touch.grain]], state.scene.walls[touch.wall]);
 }
 
 /// On the grain [N].
@@ -176,10 +176,10 @@ Plane Stepper::force_of_wall(const WallTouch& touch) const
 
 void Stepper::compute_wall_forces()
 {
-	for (Wall& wall : scene.walls) wall.force_x = wall.force_y = 0;
-	for (WallTouch& touch : wall_touches) {
-		Wall& wall = scene.walls[touch.wall];
-		const auto contact = kinematics(placement_of(touch), rows[row_of[touch.grain]], wall, data.dt);
+	for (Wall& wall : state.scene.walls) wall.force_x = wall.force_y = 0;
+	for (WallTouch& touch : state.wall_touches) {
+		Wall& wall = state.scene.walls[touch.wall];
+		const auto contact = kinematics(placement_of(touch), state.rows[row_of[touch.grain]], wall, data.dt);
 		touch.overlap = contact.overlap;
 		touch.normal = touch.friction = 0;
 		touch.slip_before = touch.slip;
@@ -187,9 +187,9 @@ void Stepper::compute_wall_forces()
 			touch.slip = 0;
 			continue;
 		}
-		const auto response = std::visit([&](const auto& law) { return law(contact, touch.slip); }, scene.law);
+		const auto response = std::visit([&](const auto& law) { return law(contact, touch.slip); }, state.scene.law);
 		touch.normal = response.normal;
-		if (scene.friction) touch.friction = response.tangential, touch.slip = response.slip;
+		if (state.scene.friction) touch.friction = response.tangential, touch.slip = response.slip;
 		const Plane force = force_of_wall(touch);
 		wall.force_x -= force.x;
 		wall.force_y -= force.y;
@@ -199,13 +199,13 @@ void Stepper::compute_wall_forces()
 /// What walls do to a body of grains.
 void Stepper::add_wall_forces(std::size_t b)
 {
-	RigidBody& body = scene.bodies[b];
-	for (const WallTouch& touch : wall_touches) {
-		if (scene.grains[touch.grain].body != static_cast<int>(b) || !(touch.overlap > 0)) continue;
+	RigidBody& body = state.scene.bodies[b];
+	for (const WallTouch& touch : state.wall_touches) {
+		if (state.scene.grains[touch.grain].body != static_cast<int>(b) || !(touch.overlap > 0)) continue;
 		const auto [x, y] = force_of_wall(touch);
 		const std::uint32_t at = row_of[touch.grain];
-		const GrainRow& row = rows[at];
-		const Member& member = members[at - n_free];
+		const GrainRow& row = state.rows[at];
+		const Member& member = state.members[at - n_free];
 		body.force_x += x;
 		body.force_y += y;
 		body.torque +=
@@ -216,39 +216,40 @@ void Stepper::add_wall_forces(std::size_t b)
 /// Kicks the free grains at walls, unless the sweep has done it, then moves the walls.
 void Stepper::move_walls()
 {
-	for (const WallTouch& touch : wall_touches) {
+	for (const WallTouch& touch : state.wall_touches) {
 		if (data.outside) break;
-		if (!(touch.overlap > 0) || scene.grains[touch.grain].body != free_grain) continue;
+		if (!(touch.overlap > 0) || state.scene.grains[touch.grain].body != free_grain) continue;
 		const Plane force = force_of_wall(touch);
 		kick_grain(row_of[touch.grain], force.x, force.y, touch.friction);
 	}
 	double fastest_wall = 0;
-	for (Wall& wall : scene.walls) {
-		wall.move(wall_length(scene, wall), data.kick, data.drift);
+	for (Wall& wall : state.scene.walls) {
+		wall.move(wall_length(state.scene, wall), data.kick, data.drift);
 		fastest_wall = std::max(fastest_wall, std::abs(wall.velocity));
 	}
 	double fastest = 0;  // squared
-	for (std::uint32_t i = 0; i < n_free; ++i) fastest = std::max(fastest, rows[i].vx * rows[i].vx + rows[i].vy * rows[i].vy);
+	for (std::uint32_t i = 0; i < n_free; ++i)
+		fastest = std::max(fastest, state.rows[i].vx * state.rows[i].vx + state.rows[i].vy * state.rows[i].vy);
 	double fastest_body = 0;
-	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-		fastest_body = std::max(
-			fastest_body, std::hypot(scene.bodies[b].vx, scene.bodies[b].vy) + std::abs(scene.bodies[b].spin) * body_reach[b]);
-	moved_near_walls += (std::max(std::sqrt(fastest), fastest_body) + fastest_wall) * data.drift;
-	if (scene.target_area_fraction > 0 && area_fraction(scene) >= scene.target_area_fraction)
-		for (Wall& wall : scene.walls) wall.velocity = 0, wall.pressed = false;
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
+		fastest_body = std::max(fastest_body, std::hypot(state.scene.bodies[b].vx, state.scene.bodies[b].vy) +
+												  std::abs(state.scene.bodies[b].spin) * body_reach[b]);
+	state.moved_near_walls += (std::max(std::sqrt(fastest), fastest_body) + fastest_wall) * data.drift;
+	if (state.scene.target_area_fraction > 0 && area_fraction(state.scene) >= state.scene.target_area_fraction)
+		for (Wall& wall : state.scene.walls) wall.velocity = 0, wall.pressed = false;
 }
 
 void Stepper::check_walls_while_running() const
 {
-	for (const WallTouch& touch : wall_touches) {
-		const GrainRow& row = rows[row_of[touch.grain]];
-		const int owner = scene.grains[touch.grain].body;
-		const bool led = owner != free_grain && !scene.bodies[owner].responds_x && !scene.bodies[owner].responds_y;
+	for (const WallTouch& touch : state.wall_touches) {
+		const GrainRow& row = state.rows[row_of[touch.grain]];
+		const int owner = state.scene.grains[touch.grain].body;
+		const bool led = owner != free_grain && !state.scene.bodies[owner].responds_x && !state.scene.bodies[owner].responds_y;
 		const double overlap = placement_of(touch).overlap;
-		if (led || !(overlap > guards.largest_overlap * row.radius)) continue;
+		if (led || !(overlap > state.guards.largest_overlap * row.radius)) continue;
 		std::ostringstream message;
-		message << now() << introduce(row_of[touch.grain]) << " overlaps wall " << name_of(scene.walls[touch.wall].side) << " by "
-				<< overlap / row.radius << " of its radius, more than " << guards.largest_overlap
+		message << now() << introduce(row_of[touch.grain]) << " overlaps wall " << name_of(state.scene.walls[touch.wall].side)
+				<< " by " << overlap / row.radius << " of its radius, more than " << state.guards.largest_overlap
 				<< "; likely grains too soft for their speed or load, a wall too fast or light, or grains that began beyond it";
 		throw std::runtime_error(message.str());
 	}
@@ -258,10 +259,10 @@ std::vector<Contact> Stepper::wall_contacts() const
 {
 	std::vector<Contact> found;
 	const double bound = slipping_bound();
-	for (const WallTouch& touch : wall_touches) {
+	for (const WallTouch& touch : state.wall_touches) {
 		if (!(touch.overlap > 0)) continue;
 		const Plane n = placement_of(touch).normal;
-		const GrainRow& row = rows[row_of[touch.grain]];
+		const GrainRow row = row_before(body_forces_known ? 0 : drifted, row_of[touch.grain]);
 		found.push_back({ touch.grain, touch.wall, n.x, n.y, row.x + row.radius * n.x, row.y + row.radius * n.y, touch.normal,
 			touch.friction, touch.overlap, touch.slip, std::abs(touch.friction) >= bound * std::abs(touch.normal) });
 	}
@@ -270,10 +271,10 @@ std::vector<Contact> Stepper::wall_contacts() const
 
 void Stepper::append_wall_touches(std::size_t b, std::vector<Touch>& touches) const
 {
-	const RigidBody& body = scene.bodies[b];
+	const RigidBody& body = state.scene.bodies[b];
 	for (const Contact& c : wall_contacts()) {
-		if (scene.grains[c.first].body != static_cast<int>(b)) continue;
-		const Member& member = members[row_of[c.first] - n_free];
+		if (state.scene.grains[c.first].body != static_cast<int>(b)) continue;
+		const Member& member = state.members[row_of[c.first] - n_free];
 		touches.push_back({ c.first, std::uint32_t(size()) + c.second, c.point_x - member.shift_x - body.x,
 			c.point_y - member.shift_y - body.y, c.n_x, c.n_y, c.normal, c.friction, c.slipping });
 	}

@@ -115,7 +115,7 @@ void require_one_crowd(const yade::BodyContainer& bodies)
 }
 
 /// What YADE's collider and integrator heed and the loop does not.
-void require_plain(const yade::Body& body)
+void require_plain(const yade::Body& body, bool damping)
 {
 	const std::string name = "GrainLoop: body " + std::to_string(body.id);
 	if (!body.isClump() && !(body.flags & yade::Body::FLAG_BOUNDED))
@@ -123,6 +123,9 @@ void require_plain(const yade::Body& body)
 									" is not bounded, so YADE's collider would not see it; set O.bodies[...].bounded=True, or "
 									"use YADE's loop");
 	const State& state = *body.state;
+	if (damping && !state.isDamped && !body.isClumpMember())
+		throw std::invalid_argument(name + " has state.isDamped=False, and GrainLoop damps all bodies alike; set it to True, or "
+										   "GrainLoop.damping to 0");
 	const bool leaves_plane = (state.vel[2] != 0 || state.angVel[0] != 0 || state.angVel[1] != 0) && !body.isClumpMember();
 	if (leaves_plane)
 		throw std::invalid_argument(
@@ -141,7 +144,7 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 	const double largest = large * median_radius(bodies);
 	require_one_crowd(bodies);
 	for (std::size_t id = 0; id < bodies.size(); ++id)
-		if (bodies.exists(int(id))) require_plain(*bodies[id]);
+		if (bodies.exists(int(id))) require_plain(*bodies[id], scene.damping > 0);
 	int frozen = -1;
 	const auto new_body = [&](int id, const RigidBody& body) {
 		const Quaternionr ori = id < 0 ? Quaternionr::Identity() : bodies[id]->state->ori;

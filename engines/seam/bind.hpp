@@ -41,10 +41,22 @@ void set_or_explain(Self& object, const std::string& key, const py::object& valu
 	if (!object.set(key, value)) assign<Self>(py::object(py::ptr(&object)), key, value);  // dead, label, ...
 }
 
+/// An engine that Python may ask while it works has `take_turn`; its attributes are read and set between two steps.
+template <class Self, class = void>
+struct Waiting {
+	explicit Waiting(const Self&) {}
+};
+template <class Self>
+struct Waiting<Self, std::void_t<decltype(std::declval<const Self&>().take_turn())>> {
+	explicit Waiting(const Self& object) : turn(object.take_turn()) {}
+	decltype(std::declval<const Self&>().take_turn()) turn;
+};
+
 /// All values first, then one check, so that their order does not matter; if one is refused, none is taken.
 template <class Self>
 void update(Self& object, const py::dict& values)
 {
+	const Waiting<Self> waiting(object);
 	const Snapshot before = object.snapshot();
 	try {
 		const py::list items = values.items();
@@ -74,6 +86,7 @@ py::object construct(const py::tuple& arguments, const py::dict& keywords)
 template <class Self, class Value>
 void set_checked(Self& object, const char* name, Value Self::*member, const Value& value)
 {
+	const Waiting<Self> waiting(object);
 	const Value before = object.*member;
 	object.*member = value;
 	try {
@@ -97,7 +110,10 @@ auto bind(const char* documentation)
 	cls.def("__setattr__", &assign<Self>);
 	Self::attributes([&](const char* name, auto member, const char* doc) {
 		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;
-		const auto get = [member](const Self& object) -> Value { return object.*member; };
+		const auto get = [member](const Self& object) -> Value {
+			const Waiting<Self> waiting(object);
+			return object.*member;
+		};
 		const auto set = [name, member](Self& object, const Value& value) {
 			set_checked(object, name, static_cast<Value Self::*>(member), value);
 		};

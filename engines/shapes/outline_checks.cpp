@@ -10,17 +10,17 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "engines/shapes/plain_text.hpp"
+
 namespace graindrive::shapes {
 
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-constexpr std::size_t most_vertices = 5000;  // of twice as many an inset takes a minute
-constexpr std::size_t most_given = 200000;   // before those on straight lines are left out
-constexpr Real one_point = 1e-9;             // of the extent: vertices that are closer are one point [-]
-constexpr Real round_off = 1e-12;            // of the extent: below it, edges are one line [-]
-constexpr Real coarsest = 1e-8;              // of the extent: what a vertex's coordinates must resolve [-]
+constexpr Real one_point = 1e-9;   // of the extent: vertices that are closer are one point [-]
+constexpr Real round_off = 1e-12;  // of the extent: below it, edges are one line [-]
+constexpr Real coarsest = 1e-8;    // of the extent: what a vertex's coordinates must resolve [-]
 
 /// A vertex as seen from the origin, as given, and its index there: a message after repairs still points at the right line.
 struct Corner {
@@ -175,13 +175,6 @@ Real middle_of(Real least, Real most)
 	return std::abs(middle) > most - least ? middle : 0;
 }
 
-void require_few(std::size_t count, std::size_t most, const std::string& which)
-{
-	if (count <= most) return;
-	throw std::invalid_argument("outline must have at most " + std::to_string(most) + " vertices" + which + ", got " +
-								std::to_string(count) + "; leave out what is finer than a bead can show");
-}
-
 }  // namespace
 
 Vector2r origin_near(const Points& vertices)
@@ -197,7 +190,7 @@ Vector2r origin_near(const Points& vertices)
 
 Points checked_polygon(const Points& vertices, const Vector2r& origin)
 {
-	require_few(vertices.size(), most_given, " in all");
+	require_count(vertices.size(), most_given, "vertices in all");
 	Corners corners = numbered(vertices, origin);
 	const Real extent = extent_of(corners);
 	require_resolved(corners, extent);
@@ -207,7 +200,7 @@ Points checked_polygon(const Points& vertices, const Vector2r& origin)
 		throw std::invalid_argument("outline must enclose an area, but all its vertices lie on one line through " +
 									name(corners.front()) + "; move one off the line");
 	corners = without_collinear(corners, round_off * extent);
-	require_few(corners.size(), most_vertices, "");
+	require_count(corners.size(), most_vertices, "vertices");
 	require_simple(corners);
 	if (twice_area(corners) < 0) std::reverse(corners.begin(), corners.end());
 	Points polygon;

@@ -1,13 +1,14 @@
-/// Files are read whole and as text; what is not a text of vertices is refused by what it is.
+/// Files are read whole; a line that is no vertex is refused, the first one too unless it names x and y.
 #include "engines/shapes/read_outline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
+#include "engines/shapes/outline_checks.hpp"
+#include "engines/shapes/plain_text.hpp"
 #include "engines/shapes/wkt.hpp"
 #include "engines/shapes/words.hpp"
 
@@ -16,35 +17,7 @@ namespace graindrive::shapes {
 namespace {
 
 constexpr std::uintmax_t largest_file = 4 << 20;  // 5,000 vertices take 200 kB [bytes]
-
-/// A byte-order mark, or every other byte zero as far as anyone looks.
-bool is_utf16(const std::string& text)
-{
-	const std::string mark = text.substr(0, 2);
-	if (mark == "\xFF\xFE" || mark == "\xFE\xFF") return true;
-	std::array<std::size_t, 2> zeros{};
-	const std::size_t seen = std::min<std::size_t>(text.size(), 64) / 2;
-	for (std::size_t i = 0; i < 2 * seen; ++i) zeros[i % 2] += text[i] == '\0';
-	return seen > 1 && std::max(zeros[0], zeros[1]) == seen && std::min(zeros[0], zeros[1]) == 0;
-}
-
-void require_text(const std::string& text)
-{
-	if (is_utf16(text)) throw std::invalid_argument("an outline must be plain or UTF-8 text, got UTF-16; save it as UTF-8");
-	if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' && !std::isspace(c); }))
-		throw std::invalid_argument("an outline must be plain or UTF-8 text, got binary data; save its vertices as CSV or WKT");
-}
-
-/// The lines of a text, without byte-order mark and comments, whatever system ended them.
-std::vector<std::string> lines_of(const std::string& text)
-{
-	std::string unix_text = text.rfind("\xEF\xBB\xBF", 0) == 0 ? text.substr(3) : text;
-	for (std::size_t at = 0; (at = unix_text.find("\r\n", at)) != std::string::npos;) unix_text.erase(at, 1);
-	std::replace(unix_text.begin(), unix_text.end(), '\r', '\n');
-	std::vector<std::string> lines = split(unix_text, '\n');
-	for (std::string& line : lines) line = stripped(line.substr(0, line.find('#')));
-	return lines;
-}
+constexpr std::size_t longest_line = 1000;        // of a table [bytes]
 
 std::string joined(const std::vector<std::string>& lines)
 {
@@ -57,54 +30,79 @@ std::string joined(const std::vector<std::string>& lines)
 std::vector<std::string> quoted_geometries(const std::string& text)
 {
 	std::vector<std::string> found;
-	const auto parts = split(text, '"');
-	for (std::size_t i = 1; i + 1 < parts.size(); i += 2)
-		if (is_wkt(parts[i])) found.push_back(parts[i]);
+	for (std::size_t start = text.find('"'); start != std::string::npos;) {
+		const std::size_t end = text.find('"', start + 1);
+		if (end == std::string::npos) break;
+		const std::string part = text.substr(start + 1, end - start - 1);
+		if (is_wkt(part)) found.push_back(part);
+		start = text.find('"', end + 1);
+	}
 	return found;
 }
 
+std::string unquoted(const std::string& field)
+{
+	return field.size() > 1 && field.front() == '"' && field.back() == '"' ? stripped(field.substr(1, field.size() - 2)) : field;
+}
+
+/// The parts of a line; none of one that is longer than two numbers can be.
 std::vector<std::string> fields_of(const std::string& line)
 {
-	std::string plain = line;
-	plain.erase(std::remove(plain.begin(), plain.end(), '"'), plain.end());
+	if (line.size() > longest_line) return {};
+	std::vector<std::string> fields = words_of(line);
 	for (const char separator : { ';', ',', '\t' }) {
-		if (plain.find(separator) == std::string::npos) continue;
-		auto fields = split(plain, separator);
+		if (line.find(separator) == std::string::npos) continue;
+		fields = split(line, separator);
 		if (fields.size() > 1 && fields.back().empty()) fields.pop_back();
-		return fields;
+		break;
 	}
-	return words_of(plain);
+	std::transform(fields.begin(), fields.end(), fields.begin(), unquoted);
+	return fields;
 }
 
-/// Names of columns: no field opens as a number would.
-bool is_header(const std::vector<std::string>& fields)
+bool is_unit(const std::string& text)
 {
-	return std::none_of(fields.begin(), fields.end(), [](const std::string& field) {
-		return field.empty() || std::isdigit(static_cast<unsigned char>(field[0])) || field.find_first_of("+-.,{}[(<") == 0 ||
-		       number(field);
-	});
+	return text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
 }
 
-Vector2r vertex_in(const std::string& line, const std::vector<std::string>& fields, std::size_t line_number)
+/// True for `name`, a small letter, in either case, alone or with a unit in brackets.
+bool names_column(const std::string& field, char name)
+{
+	if (field.empty() || std::tolower(static_cast<unsigned char>(field[0])) != name) return false;
+	const std::string rest = stripped(field.substr(1));
+	return rest.empty() || is_unit(rest);
+}
+
+/// Names of the columns, x and y; anything else in the first line is a vertex, which must not be lost for a mistyped digit.
+bool is_header(std::vector<std::string> fields)
+{
+	if (fields.size() == 4 && is_unit(fields[1]) && is_unit(fields[3]))  // blanks part names and units alike
+		fields = { fields[0] + fields[1], fields[2] + fields[3] };
+	return fields.size() == 2 && names_column(fields[0], 'x') && names_column(fields[1], 'y');
+}
+
+Vector2r vertex_in(const std::string& line, const std::vector<std::string>& fields, std::size_t line_number, bool header_possible)
 {
 	if (fields.size() == 2) {
 		const auto x = number(fields[0]), y = number(fields[1]);
 		if (x && y) return { *x, *y };
 	}
+	const std::string header = header_possible ? "; a header names x and y alone, as in x [d], y [d]" : "";
 	throw std::invalid_argument("line " + std::to_string(line_number) + " must hold two numbers x, y, got " + shown(line) +
-								"; comments start with #, decimals take a point");
+								note_on_foreign(line) + header + "; comments start with #, decimals take a point");
 }
 
 Points vertices_in_table(const std::vector<std::string>& lines)
 {
+	const std::size_t filled = lines.size() - std::count(lines.begin(), lines.end(), "");
+	require_count(filled, most_given + 1, "lines that are not blank");  // one may be a header
 	Points vertices;
 	bool header_possible = true;
 	for (std::size_t i = 0; i < lines.size(); ++i) {
 		if (lines[i].empty()) continue;
 		const auto fields = fields_of(lines[i]);
-		const bool header = header_possible && is_header(fields);
+		if (!header_possible || !is_header(fields)) vertices.push_back(vertex_in(lines[i], fields, i + 1, header_possible));
 		header_possible = false;
-		if (!header) vertices.push_back(vertex_in(lines[i], fields, i + 1));
 	}
 	return vertices;
 }

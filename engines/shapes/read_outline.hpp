@@ -10,7 +10,7 @@ namespace graindrive::shapes {
 ///
 /// WKT: one `POLYGON ((x y, x y, ...))`, without holes, alone or as the one quoted geometry of a table (see wkt.hpp). CSV: x and
 /// y of one vertex a line, separated by semicolon, comma, tab or blanks; text after `#` is a comment; the first line may be a
-/// header. The text is UTF-8, of at most 4 MiB.
+/// header that names x and y, with units in brackets. The text is UTF-8, of at most 4 MiB and 400,000 lines.
 /// @throws std::invalid_argument naming the file, and the line or vertex, for anything else
 Outline read_outline(const std::string& path);
 

@@ -111,17 +111,88 @@ TEST(ReadOutline, refuses_decimal_commas_from_the_first_line_on)
 	EXPECT_DOUBLE_EQ(area_in("\"0\",\"0\"\n\"2\",\"0\"\n\"2\",\"3\"\n\"0\",\"3\""), 6) << "quoted numbers";
 }
 
+TEST(ReadOutline, takes_a_header_that_names_x_and_y)
+{
+	const std::string square = "\n0,0\n2,0\n2,3\n0,3\n";
+	for (const char* header : { "x,y", "X;Y", "x\ty", "x y", "\"x\",\"y\"", "x [d], y [d]", "X (mm);Y (mm)", "x [m] y [m]",
+			 "x[m] y[m]", "\"x [m]\",\"y [m]\"", "x,y,", " x , y # corners" })
+		EXPECT_DOUBLE_EQ(area_in(header + square), 6) << header;
+}
+
+TEST(ReadOutline, does_not_take_a_mistyped_vertex_for_a_header)
+{
+	const std::string three = "\n4,-4\n4,4\n-4,4\n";
+	for (const char* first : { "l,O", "\u22124,\u22124", "\uFF10,\uFF10", "\u0660,\u0660", "'0','0'", "$0,$0", "y,x", "x,y,z",
+			 "id,x,y", "x", "x 4,y 4", "x=0,y=0", "west,south", "O O", "\"0,\"0", "4\",4\"" }) {
+		const std::string said = refusal(first + three);
+		EXPECT_TRUE(mentions(said, "line 1 must hold two numbers x, y, got '")) << first << ": " << said;
+		EXPECT_TRUE(mentions(said, "a header names x and y alone, as in x [d], y [d]")) << first << ": " << said;
+	}
+	EXPECT_TRUE(
+		mentions(refusal("\u22124,\u22124" + three), "(with U+2212; numbers are written with 0 to 9, +, -, . and e alone)"));
+	EXPECT_FALSE(mentions(refusal("0,0\nl,O\n"), "a header names")) << "only the first line can be one";
+}
+
+TEST(ReadOutline, names_the_character_that_only_looks_like_a_digit)
+{
+	EXPECT_TRUE(mentions(refusal("0,0\n\uFF14,0\n"), "line 2 must hold two numbers x, y, got '???,0' (with U+FF14"));
+	EXPECT_TRUE(mentions(
+		refusal("POLYGON ((0 0, 4 \u22124, 4 4))"), "vertex 1 of the WKT must hold 2 numbers, got '4 ???4' (with U+2212"));
+}
+
+TEST(ReadOutline, refuses_a_second_srid)
+{
+	for (const char* text : { "SRID=1;SRID=2;POLYGON ((0 0, 1 0, 1 1))", "srid = 1; SRID = 1; POLYGON EMPTY" })
+		EXPECT_TRUE(mentions(refusal(text), "must have at most one SRID=...; before it")) << text << ": " << refusal(text);
+}
+
+TEST(ReadOutline, counts_before_it_reads)
+{
+	const auto repeated = [](std::size_t times, const std::string& text) {
+		std::string all;
+		for (std::size_t i = 0; i < times; ++i) all += text;
+		return all;
+	};
+	const auto expect = [](const std::string& text, const std::string& said) {
+		EXPECT_TRUE(mentions(refusal(text), said)) << refusal(text);
+	};
+	expect("POLYGON((" + repeated(2000000, ",") + "))", "at most 200000 vertices in all, got 2000001");
+	expect("POLYGON((0 0)" + repeated(100000, ",(0 0, 1 0, 1 1)") + ")", "at most 1000 opening brackets in its WKT, got 100002");
+	expect("POLYGON((0 0, " + repeated(1000000, "0 ") + "))", "vertex 1 of the WKT must hold 2 numbers");
+	expect(repeated(3000000, "\""), "line 1 must hold two numbers");
+	expect(repeated(3000000, ","), "line 1 must hold two numbers");
+	expect(repeated(2000000, "\"\n"), "at most 400000 lines, got 2000001");
+	expect(repeated(4000000, "\n") + "0,0\n1,0\n0,1\n", "at most 400000 lines, got 4000004; leave out blank lines");
+	expect(repeated(1000000, "\r\n") + "0,0\r\n1,0\r\n0,1\r\n", "at most 400000 lines, got 1000004");
+	expect(repeated(300000, "0 0\n"), "at most 200001 lines that are not blank, got 300000");
+	EXPECT_DOUBLE_EQ(area_in(repeated(300000, "\n") + "0,0\n1,0\n0,1\n"), 0.5) << "blank lines that are not too many";
+}
+
 TEST(ReadOutline, says_what_the_text_is_if_it_is_no_text)
 {
-	EXPECT_TRUE(mentions(refusal(std::string("\xFF\xFE"
-											 "0\0,\0",
-							 6)),
-		"got UTF-16"));
-	EXPECT_TRUE(mentions(refusal(std::string("0\0,\0000\0\n\0", 8)), "got UTF-16")) << "without a mark";
-	EXPECT_TRUE(mentions(refusal(std::string("\x7f"
-											 "ELF\1\2\0\0",
-							 8)),
-		"got binary data"));
+	const std::string corners = "0,0\n4,0\n";
+	const auto wide = [&](std::size_t width, std::size_t place) {
+		std::string text(width * corners.size(), '\0');
+		for (std::size_t i = 0; i < corners.size(); ++i) text[width * i + place] = corners[i];
+		return text;
+	};
+	const auto expect = [](const std::string& text, const std::string& said) {
+		EXPECT_TRUE(mentions(refusal(text), said)) << said << ": " << refusal(text);
+	};
+	expect(wide(2, 0), "got UTF-16; save it as UTF-8");
+	expect(wide(2, 1), "got UTF-16");
+	expect("\xFF\xFE" + wide(2, 0), "got UTF-16");
+	expect(wide(4, 0), "got UTF-32; save it as UTF-8");
+	expect(wide(4, 3), "got UTF-32");
+	expect(std::string("\xFF\xFE\0\0", 4) + wide(4, 0), "got UTF-32");
+	expect(std::string("\0\0\xFE\xFF", 4) + wide(4, 3), "got UTF-32");
+	for (const char* line_end : { "\x15", "\x25", "\r\x25" })  // EBCDIC's own digits, comma and line ends
+		expect(std::string("\xF0\x6B\xF0") + line_end + "\xF4\x6B\xF0" + line_end, "got EBCDIC; save it as UTF-8");
+	expect("\U0001D7D8,\U0001D7D8\n", "(with U+1D7D8");  // digits beyond ASCII begin with F0 in UTF-8
+	expect(std::string("\x7f"
+					   "ELF\1\2\0\0",
+			   8),
+		"got binary data");
 }
 
 TEST(ReadOutline, names_the_file)

@@ -130,7 +130,7 @@ void bind_shapes()
 	py::def("shape_names", &names, "Names that outline_of knows, without the aliases OS1 to OS5.");
 	py::def("read_outline", &read_outline, (py::arg("path")),
 		"Outline from a regular file of at most 4 MiB: one WKT POLYGON without holes, alone or quoted in a table, or a CSV of\n"
-		"vertices (x, y a line, # comments, optional header).\n\n"
+		"vertices (x, y a line, # comments, optional header that names x and y).\n\n"
 		"Raises ValueError naming the file and the line or vertex.");
 }
 

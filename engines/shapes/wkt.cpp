@@ -6,13 +6,19 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "engines/shapes/outline_checks.hpp"
+#include "engines/shapes/plain_text.hpp"
 #include "engines/shapes/words.hpp"
 
 namespace graindrive::shapes {
 
 namespace {
 
+const char* const srid = "SRID";  // number of a coordinate system
 const char* const an_outline_is = "; an outline is one POLYGON ((x y, x y, ...))";
+
+constexpr std::size_t longest_vertex = 1000;  // [bytes]
+constexpr std::size_t most_brackets = 1000;   // an outline opens two or three
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)); }
 
@@ -76,7 +82,7 @@ std::string without_srid(const std::string& text)
 	const std::string plain = stripped(text);
 	Scanner scanner(plain);
 	const auto end = plain.find(';');
-	return scanner.word() == "SRID" && scanner.take('=') && end != std::string::npos ? plain.substr(end + 1) : plain;
+	return scanner.word() == srid && scanner.take('=') && end != std::string::npos ? plain.substr(end + 1) : plain;
 }
 
 bool is_dimension(const std::string& word) { return word == "Z" || word == "M" || word == "ZM"; }
@@ -105,47 +111,40 @@ Tag tag_of(const std::string& word)
 	return { word, "" };
 }
 
-/// One ring: what each vertex holds, in words.
-using Words = std::vector<std::vector<std::string>>;
+/// What each vertex of a ring holds.
+using Ring = std::vector<std::string>;
 
-Words ring(Scanner& scanner)
+Ring ring(Scanner& scanner)
 {
 	scanner.require('(');
-	Words vertices;
-	for (const std::string& vertex : split(scanner.up_to_bracket(), ',')) vertices.push_back(words_of(vertex));
+	const Ring vertices = split(scanner.up_to_bracket(), ',');
 	scanner.require(')');
 	return vertices;
 }
 
-std::vector<Words> polygon(Scanner& scanner)
+std::vector<Ring> polygon(Scanner& scanner)
 {
 	scanner.require('(');
-	std::vector<Words> rings;
+	std::vector<Ring> rings;
 	do rings.push_back(ring(scanner));
 	while (scanner.take(','));
 	scanner.require(')');
 	return rings;
 }
 
-std::string joined(const std::vector<std::string>& words)
-{
-	std::string text;
-	for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-	return text;
-}
-
-std::vector<Real> numbers(const std::vector<std::string>& words, std::size_t count, std::size_t index)
+std::vector<Real> numbers(const std::string& vertex, std::size_t count, std::size_t index)
 {
 	std::vector<Real> values;
+	const auto words = vertex.size() > longest_vertex ? Ring() : words_of(vertex);
 	for (const std::string& word : words)
 		if (const auto value = number(word)) values.push_back(*value);
 	if (values.size() == count && words.size() == count) return values;
 	throw std::invalid_argument("vertex " + std::to_string(index) + " of the WKT must hold " + std::to_string(count) +
-								" numbers, got " + shown(joined(words)) +
+								" numbers, got " + shown(vertex) + note_on_foreign(vertex) +
 								"; write x y, a blank between the two, a comma between vertices, decimals with a point");
 }
 
-Points vertices_of(const Words& ring, const std::string& dimension)
+Points vertices_of(const Ring& ring, const std::string& dimension)
 {
 	Points vertices;
 	Real height = 0;
@@ -156,20 +155,29 @@ Points vertices_of(const Words& ring, const std::string& dimension)
 		if (i == 0) height = values[2];
 		if (values[2] != height)
 			throw std::invalid_argument("all vertices of a POLYGON Z must be at one height, for an outline is flat, got " +
-										shown(ring[i][2]) + " at vertex " + std::to_string(i) + "; save it without heights");
+										shown(words_of(ring[i])[2]) + " at vertex " + std::to_string(i) +
+										"; save it without heights");
 	}
 	return vertices;
 }
 
-std::vector<std::vector<Words>> polygons(Scanner& scanner, const Tag& tag)
+std::vector<std::vector<Ring>> polygons(Scanner& scanner, const Tag& tag)
 {
 	if (tag.geometry == "POLYGON") return { polygon(scanner) };
-	std::vector<std::vector<Words>> members;
+	std::vector<std::vector<Ring>> members;
 	scanner.require('(');
 	do members.push_back(polygon(scanner));
 	while (scanner.take(','));
 	scanner.require(')');
 	return members;
+}
+
+/// Vertices are parted by commas, rings and members open brackets; holes and members are counted exactly once all is read.
+void require_short(const std::string& text)
+{
+	require_count(std::count(text.begin(), text.end(), '('), most_brackets, "opening brackets in its WKT",
+		"keep the outer ring of one polygon");
+	require_count(1 + std::count(text.begin(), text.end(), ','), most_given, "vertices in all");
 }
 
 void require_one(std::size_t count, const std::string& what, const std::string& way_out)
@@ -183,7 +191,9 @@ bool is_wkt(const std::string& text)
 {
 	const std::string plain = without_srid(text);
 	Scanner scanner(plain);
-	if (!is_geometry(tag_of(scanner.word()).geometry)) return false;
+	const std::string name = scanner.word();
+	if (name == srid && scanner.take('=')) return true;  // a second one
+	if (!is_geometry(tag_of(name).geometry)) return false;
 	const char next = scanner.next();
 	if (!is_letter(next)) return next != ',' && next != ';' && next != '\0';  // else the name of a column
 	const std::string word = scanner.word();
@@ -193,8 +203,12 @@ bool is_wkt(const std::string& text)
 Points vertices_in_wkt(const std::string& text)
 {
 	const std::string plain = without_srid(text);
+	require_short(plain);
 	Scanner scanner(plain);
 	Tag tag = tag_of(scanner.word());
+	if (tag.geometry == srid)
+		throw std::invalid_argument(std::string("an outline must have at most one SRID=...; before it, got a second at ") +
+									shown(plain) + "; keep the one that is meant, or none");
 	if (tag.geometry != "POLYGON" && tag.geometry != "MULTIPOLYGON")
 		throw std::invalid_argument(
 			"an outline must be one WKT POLYGON, got a " + tag.geometry + "; save the outer ring alone as POLYGON ((x y, ...))");

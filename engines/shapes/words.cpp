@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
-#include <sstream>
 
 namespace graindrive::shapes {
 
@@ -23,8 +21,13 @@ std::string stripped(const std::string& text)
 
 std::vector<std::string> words_of(const std::string& text)
 {
-	std::istringstream words(text);
-	return { std::istream_iterator<std::string>(words), {} };
+	std::vector<std::string> words;
+	for (std::size_t start = text.find_first_not_of(blanks); start != std::string::npos;) {
+		const std::size_t end = std::min(text.find_first_of(blanks, start), text.size());
+		words.push_back(text.substr(start, end - start));
+		start = text.find_first_not_of(blanks, end);
+	}
+	return words;
 }
 
 std::vector<std::string> split(const std::string& text, char separator)

@@ -22,8 +22,10 @@ class SteadyState:
     """Means over the steady state: `start` [d] of travel, number of `blocks`, `summary` of quantities with errors.
 
     `angular` holds, by angle from the velocity, shape (bins,): theta [rad], and normal, tangential [N] (counter-clockwise),
-    contacts_by_angle, slipping_by_angle [-], mobilised = F_T/(mu F_N), each with its standard error NAME_err. `resolved`
-    says whether the series is steady and long enough for the error of L/D to be believed.
+    contacts_by_angle, slipping_by_angle [-], mobilised = F_T/(mu F_N), each with its standard error NAME_err. mobilised may
+    exceed 1: a contact that parts may pull by its damping, F_N < 0, and slip at mu|F_N|, which lowers the sum of F_N and not
+    that of F_T. The model's Eqs 9 to 15 take the sums as they are, and so do we. `resolved` says whether the series is
+    steady and long enough for the error of L/D to be believed.
     """
 
     start: float

@@ -66,7 +66,7 @@ def draw_phases(axes, run):
     if np.isfinite(rates).any():
         axes.errorbar(phases, rates, np.nan_to_num(errors), fmt="o-", color=BLUE, markersize=2, elinewidth=0.6)
     else:
-        words = "no whole cycle after the\nfirst tenth of the run"
+        words = "fewer than two whole cycles\nafter the first tenth of the run"
         axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center")
         axes.set_yticks([])
     axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
@@ -86,11 +86,11 @@ def title(run):
 
 
 def draw_rate(axes, found):
-    """Line from the first to the last cycle of the average, whose slope is the rise rate, named with its error."""
+    """Line between the middles of the average's first and last cycle, whose slope is the rise rate, named with its error."""
     inside = (found.cycle_t >= found.start) & (found.cycle_t <= found.end)
     label = rf"$V_y$ = {with_error(found.rate, found.error)} $\sqrt{{gd}}$"
-    ends = found.cycle_y[inside][[0, -1]]
-    axes.plot([found.start, found.end], ends, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
+    middles, means = (column[inside][[0, -1]] for column in (found.cycle_t, found.cycle_y))
+    axes.plot(middles, means, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
 
 
 def with_error(value, error):

@@ -8,6 +8,7 @@ import numpy as np
 from . import engines, progress, scene
 from .channel_recipe import finished, insert, mean_area, radii_for
 from .errors import UsageError
+from .progress_line import Calming
 
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 DEEPEST_OVERLAP = 0.01  # [R] where closing walls count as jammed
@@ -105,10 +106,16 @@ def rest(recipe, ids):
     limit = len(ids) * mean_area(recipe) * recipe.material.density * recipe.rest_speed**2 / 2
     block = int(np.ceil(recipe.d / recipe.rest_speed / O.dt / 100))
     loop = scene.fast_loop()
-    for _ in range(MOST_STOPS):
-        scene.set_motion(ids, 0.0)
-        progress.run_blocks(block, block, grains=len(ids), label="coming to rest")
-        energy = loop.kineticEnergy / limit
-        if energy < 1:
-            return energy
-    raise RuntimeError(f"grains keep a kinetic energy of {energy:.3g} times that at {recipe.rest_speed:g}")
+    aim = Calming(lambda: loop.kineticEnergy / limit, 1.0, f"times that at {recipe.rest_speed:g} m/s")
+
+    def stop_unless_at_rest(done):
+        if not aim.reached(done):
+            scene.set_motion(ids, 0.0)
+        return aim.reached(done)
+
+    scene.set_motion(ids, 0.0)
+    label = "coming to rest"
+    progress.run_blocks(MOST_STOPS * block, block, stop_unless_at_rest, grains=len(ids), label=label, aim=aim)
+    if aim.energy < 1:
+        return aim.energy
+    raise RuntimeError(f"grains keep a kinetic energy of {aim.energy:.3g} times that at {recipe.rest_speed:g}")

@@ -25,5 +25,9 @@ def find_yade():
 
 find_yade()
 
+from . import interaction_helpers, pausing  # noqa: E402
 from ._engines import *  # noqa: E402, F401, F403
 from ._engines import prove_layout  # noqa: E402, F401
+
+interaction_helpers.install()
+pausing.watch()

@@ -8,6 +8,7 @@ import numpy as np
 from . import cache, cover, engines, lid, progress, scene
 from .errors import UsageError
 from .material import HertzHistoryMaterial
+from .progress_line import Calming
 
 RECIPE = 4  # raise it when a bed of the same parameters comes out different
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
@@ -123,13 +124,16 @@ def settle(recipe):
         return bed
     if recipe.lid == "rigid":
         top = float((bed["y"] + bed["r"]).max())
-        return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], bed["density"], lid_y=top + 0.5)
+        return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], bed["density"], top + 0.5, " under a rigid lid")
     density = lid.heavy_layer(bed, recipe.width, recipe.lid_pressure, recipe.material.density, lid.BED_FRACTION)
-    return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density)
+    return come_to_rest(recipe, bed["x"], bed["y"], bed["r"], density, under=" under a lid of heavy grains")
 
 
-def come_to_rest(recipe, x, y, r, density, lid_y=None):
-    """Let grains fall until they rest, on the fast loop, under a rigid lid at `lid_y` if that is given; return the bed."""
+def come_to_rest(recipe, x, y, r, density, lid_y=None, under=""):
+    """Let grains fall until they rest, on the fast loop, under a rigid lid at `lid_y` if that is given; return the bed.
+
+    A person is told what they settle `under`.
+    """
     from yade import O
 
     scene.start(recipe.width, float(y.max()) + 2)
@@ -139,6 +143,10 @@ def come_to_rest(recipe, x, y, r, density, lid_y=None):
         beads[:, 0], beads[:, 1], np.full(len(beads), recipe.bead_radius), recipe.material.density, "xyzXYZ"
     )
     ids = scene.add_disks(x, y, r, density)
+    print(
+        f"settling a bed of {len(ids)} grains{under} until they keep less than {recipe.rest:g} m g d each",
+        file=sys.stderr,
+    )
     rigid = None if lid_y is None else lid.add_rigid(recipe.width, lid_y, recipe.lid_pressure)
     scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=LARGEST_OVERLAP)
     O.dt = recipe.dt
@@ -169,23 +177,20 @@ def run_until_at_rest(recipe, ids, density, fall_time):
     """
     from yade import O
 
-    block = max(1, round(1 / O.dt))
-    energy = np.inf
-
-    print(f"settling a bed of {len(ids)} grains until they keep less than {recipe.rest:g} m g d each", file=sys.stderr)
-
-    def at_rest(done):
-        nonlocal energy
-        energy = kinetic_energy_per_grain(scene.rows_of(ids), density)
-        return energy < recipe.rest and done * O.dt > fall_time
-
-    progress.run_blocks(round(50 * fall_time / O.dt), block, at_rest, grains=len(ids), label="settling (at most)")
-    if not energy < recipe.rest:
+    block, least = max(1, round(1 / O.dt)), fall_time / O.dt
+    aim = Calming(
+        lambda: kinetic_energy_per_grain(scene.rows_of(ids), density),
+        recipe.rest,
+        "m g d per grain",
+        least,
+    )
+    progress.run_blocks(round(50 * least), block, aim.reached, grains=len(ids), label="settling", aim=aim)
+    if not aim.energy < recipe.rest:
         raise RuntimeError(
-            f"the bed keeps a kinetic energy of {energy:.2g} m g d per grain, over {recipe.rest:.2g};"
+            f"the bed keeps a kinetic energy of {aim.energy:.2g} m g d per grain, over {recipe.rest:.2g};"
             " raise rest or lower dt_factor"
         )
-    return energy
+    return aim.energy
 
 
 def kinetic_energy_per_grain(grains, density):

@@ -1,13 +1,13 @@
 """Drive YADE's loop in blocks of steps, showing rate and time left, open to signals and to engines' errors."""
 
 import atexit
-import sys
 import threading
 import time
 from dataclasses import dataclass
 
 from . import signals
 from .errors import EngineError, UsageError
+from .progress_line import ProgressLine
 
 
 @dataclass(frozen=True)
@@ -35,18 +35,19 @@ def require_feasible(steps):
         )
 
 
-def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run", pauses=(), on_pause=None):
+def run_blocks(total_steps, block, on_block=None, *, grains=0, label="run", pauses=(), on_pause=None, aim=None):
     """Run YADE `total_steps` steps, calling `on_block(steps_done)` after every `block` steps; return the `Timing`.
 
     At `pauses`, numbers of steps that lie inside blocks, `on_pause(steps_done)` is called. A true answer of `on_block` ends
-    the run early. `grains` is the number of grains [-] that the rate counts. Raises EngineError with what an engine raised,
+    the run early. `grains` is the number of grains [-] that the rate counts. For a run that ends early as a rule, the
+    `Calming` `aim` says how far it is; it measures before `on_block` is called. Raises EngineError with what an engine raised,
     `Interrupted` on a signal, RuntimeError if something else paused the loop, UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
         raise ValueError(f"steps must be >= 0 and block >= 1, got {total_steps} and {block}")
     require_feasible(total_steps)
     done, seconds = 0, 0.0
-    with ProgressLine(total_steps, grains, label) as line:
+    with ProgressLine(total_steps, grains, label, aim) as line:
         while done < total_steps:
             end = min(done + block, total_steps)
             for pause in sorted({step for step in pauses if done < step < end}):
@@ -156,46 +157,3 @@ class LoopListener:
 
 _listener = LoopListener()
 atexit.register(_listener.leave)
-
-
-class ProgressLine:
-    """A bar on a terminal, one line per 10 % elsewhere; both show the rate and the time left, on stderr."""
-
-    def __init__(self, total_steps, grains, label):
-        self.total, self.grains, self.label = total_steps, grains, label
-        self.done, self.tenths, self.bar, self.start = 0, 0, None, time.perf_counter()
-
-    def __enter__(self):
-        if sys.stderr.isatty():
-            from tqdm import tqdm
-
-            self.bar = tqdm(
-                total=self.total * (self.grains or 1),
-                desc=self.label,
-                unit=" particle-steps" if self.grains else " steps",
-                unit_scale=True,
-                bar_format="{desc} {percentage:3.0f} % |{bar}| {rate_fmt}, {remaining} left",
-            )
-        return self
-
-    def update(self, done):
-        """Show that `done` steps of the total are run."""
-        if self.bar is not None:
-            self.bar.update((done - self.done) * (self.grains or 1))
-        elif self.total and 10 * done // self.total > self.tenths:
-            self.tenths = 10 * done // self.total
-            print(
-                f"{self.label}: {10 * self.tenths:3d} %, {self.rate_and_time_left(done)}", file=sys.stderr, flush=True
-            )
-        self.done = done
-
-    def rate_and_time_left(self, done):
-        """Return in words the mean rate so far and the time left at that rate."""
-        elapsed = max(time.perf_counter() - self.start, 1e-9)
-        rate, left = done / elapsed, elapsed * (self.total - done) / done
-        words = f"{rate * self.grains / 1e6:.3g} M particle-steps/s" if self.grains else f"{rate:.3g} steps/s"
-        return f"{words}, {int(left) // 60}:{int(left) % 60:02d} left"
-
-    def __exit__(self, *_):
-        if self.bar is not None:
-            self.bar.close()

@@ -14,6 +14,7 @@ from .errors import UsageError, one_line
 from .run_data import UNREADABLE
 
 LONGEST_NAME = 255 - len(".interrupted-9999")  # of a file system's names, in bytes
+HIDDEN_NAME = re.compile(r"\..+\.(part|old|gone)-\d+")  # as `hidden` makes them: such a folder does not outlive its run
 LONGEST_SHOWN = 300  # characters of a path in a message
 
 
@@ -33,6 +34,10 @@ def place_of(given):
     path = Path(os.path.realpath(expanded))
     if not path.name or given.rstrip("/").endswith(".."):
         raise UsageError(f"{refused} is not the name of a run folder; give one below it")
+    if HIDDEN_NAME.fullmatch(path.name):
+        raise UsageError(
+            f"{refused} is a name that runs at work give to their folders, which are removed; leave the dot out"
+        )
     if os.path.ismount(path):
         raise UsageError(
             f"{refused} is a mount point, which no run folder can replace; give one below it, out={given}/run"

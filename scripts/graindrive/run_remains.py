@@ -12,6 +12,7 @@
 | `.NAME.old-PID` | redo, killed between its two renames | gives it back its name, or removes it if `NAME` is there |
 | `.NAME.gone-PID` | killed while it was removed | removes it |
 | `NAME.interrupted`, `NAME.failed` | kept on purpose | resume=1 goes on from the furthest of the same parameters |
+| `NAME.failed`, complete | a finished run of its own, by `out=NAME.failed` or renamed | leaves it alone |
 
 Each step between them is one rename of something whole, so a kill can leave nothing else. A part that was resumed holds a copy
 of what it goes on from: it takes the place of those remains once it is further than they are, and counts for nothing before.
@@ -253,6 +254,15 @@ def candidates(out, digest):
 
 
 def remains_of(out):
-    """Return the folders NAME.interrupted, NAME.failed-2 … beside `out`."""
+    """Return the folders NAME.interrupted, NAME.failed-2 … beside `out` that hold remains; a finished run may be called so."""
     name = re.compile(re.escape(out.name) + r"\.(interrupted|failed)(-\d+)?")
-    return sorted(path for path in out.parent.iterdir() if name.fullmatch(path.name) and path.is_dir())
+    named = (path for path in out.parent.iterdir() if name.fullmatch(path.name) and path.is_dir())
+    return sorted(path for path in named if not is_finished(path))
+
+
+def is_finished(folder):
+    """True for a run that came to its end.
+
+    Remains whose data are complete are those of a run that was killed while it was drawn; they keep their checkpoint.
+    """
+    return attribute(folder, "state") == "complete" and not checkpoint.folders(folder)

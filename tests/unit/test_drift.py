@@ -28,7 +28,22 @@ def test_cycle_means_do_not_need_the_period_to_be_a_multiple_of_the_sampling():
 def test_drift_of_a_steady_riser(rate):
     found = drift(*shaken(rate), 4.0)
     assert found.rate == pytest.approx(rate, abs=1e-9) and found.error < 1e-9
-    assert found.start == pytest.approx(42) and found.end == pytest.approx(398)
+    assert found.start == pytest.approx(40) and found.end == pytest.approx(400)
+
+
+def test_the_average_ends_with_the_last_whole_cycle_and_phases_rest_on_the_same_cycles():
+    t, y = shaken(0.05, period=2.0, end=4.0, points=401)
+    found = drift(t, y, 2.0)
+    assert (found.start, found.end) == (0.0, 4.0), "both cycles have their middles behind 0.4, and nothing was arrested"
+    _, rates, errors = phase_rates(t, y, 2.0, found.start, found.end)
+    assert rates.mean() == pytest.approx(found.rate, abs=1e-9) and np.all(errors < 1e-9)
+    assert drift(*shaken(0.05, period=4.0, end=10.0), 4.0).end == 8.0
+
+
+def test_a_cycle_whose_middle_lies_in_the_first_tenth_does_not_count():
+    t, y = shaken(0.05, period=2.0, end=40.0)
+    found = drift(t, np.where(t < 4, 5.0, y), 2.0)
+    assert found.start == 4.0 and found.rate == pytest.approx(0.05, abs=1e-4)
 
 
 def test_drift_lies_within_its_error_for_a_random_ratchet():

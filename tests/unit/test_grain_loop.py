@@ -15,5 +15,5 @@ def scene():
 
 def test_a_loop_of_unknown_origin_cannot_be_taken_back():
     O.engines = [engines.GrainLoop(label="by_hand")]
-    with pytest.raises(UsageError, match="was not made by use_grain_loop"):
+    with pytest.raises(UsageError, match="was not made for this scene by use_grain_loop"):
         grain_loop.use_yade_loop()

@@ -64,6 +64,7 @@ def test_measured_kappa_gives_back_lift_over_drag_when_all_slips():
     assert found["model_kappa"] == pytest.approx(found["lift_to_drag"], rel=1e-10)
     assert found["model_kappa_err"] == pytest.approx(found["lift_to_drag_err"], rel=0.02)  # linear in the same ratio
     assert found["slipping_share"] == 1 and found["front_share"] == 1
+    assert found["slipping_share_err"] == found["front_share_err"] == 0
     assert found["steady"] == 1 and found["steady_from"] == pytest.approx(30.1)
 
 
@@ -77,9 +78,20 @@ def test_lift_follows_the_spin_and_fluctuations_add_up():
 
 
 def test_mobilised_friction_is_one_where_all_slips_and_unknown_where_nothing_presses():
-    mobilised = forces.steady_state(series(500), 0, 0.5, 5.0).angular["mobilised"][0]
+    angular = forces.steady_state(series(500), 0, 0.5, 5.0).angular
+    mobilised = angular["mobilised"][0]
     front = np.abs(THETA) < np.pi / 2
     assert np.allclose(mobilised[front], -1) and np.isnan(mobilised[~front]).all()
+    assert (angular["mobilised_err"][0][front] == 0).all(), "the same in every block"
+
+
+def test_contacts_that_pull_while_they_slip_mobilise_more_than_all():
+    """Of the sum of |F_N| the share p pulls: F_T/(mu F_N) of the sums is 1/(1 - 2p)."""
+    rows, pull = series(500), 0.02
+    mobilised = forces.steady_state({**rows, "normal": (1 - 2 * pull) * rows["normal"]}, 0, 0.5, 5.0).angular[
+        "mobilised"
+    ][0]
+    assert mobilised[np.abs(THETA) < np.pi / 2] == pytest.approx(-1 / (1 - 2 * pull), rel=1e-12)
 
 
 def test_a_drifting_series_is_not_steady():

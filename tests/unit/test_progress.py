@@ -7,7 +7,9 @@ import pytest
 pytest.importorskip("yade")
 
 from graindrive.errors import UsageError  # noqa: E402
+from graindrive import progress_line  # noqa: E402
 from graindrive.progress import Timing, run_blocks  # noqa: E402
+from graindrive.progress_line import Calming  # noqa: E402
 
 
 @pytest.fixture
@@ -75,6 +77,36 @@ def test_ten_lines_where_nobody_watches(scene, capsys):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 10 and lines[0].startswith("settle:  10 %, ") and "M particle-steps/s" in lines[0]
     assert lines[-1].startswith("settle: 100 %") and lines[-1].endswith("0:00 left")
+
+
+def test_the_way_to_rest_is_the_energys_on_a_logarithmic_scale():
+    energies = iter([1.0, 100.0, 10.0, 1.0, 3.0, 0.1, 0.009])  # to 0.01: four powers of ten below the highest
+    aim = Calming(lambda: next(energies), 0.01, "J")
+    assert [aim.look(done) for done in range(1, 8)] == pytest.approx([0, 0, 0.25, 0.5, 0.5, 0.75, 1], abs=1e-12)
+    assert aim.reached(1) and aim.in_words() == "kinetic energy 0.009 J, to fall below 0.01"
+
+
+def test_grains_that_have_not_fallen_yet_are_not_at_rest():
+    energies = iter([0.0, 1.0, 0.1, 0.009])
+    aim = Calming(lambda: next(energies), 0.01, "J", least_steps=20)
+    found = [(aim.look(done), aim.reached(done)) for done in (5, 10, 20, 25)]
+    assert found == [(0.125, False), (0.25, False), (pytest.approx(0.75), False), (1.0, True)]
+
+
+def test_a_log_says_how_far_grains_have_calmed_and_ends_when_they_rest(scene, capsys):
+    aim = Calming(lambda: 10.0 ** (-scene.iter / 100), 1e-4, "m g d", least_steps=100)
+    timing = run_blocks(10_000, 10, aim.reached, grains=5, label="settling", aim=aim)
+    lines = capsys.readouterr().err.splitlines()
+    assert timing.steps == 410 and len(lines) == 9, "from 40 % to 61 % when they may rest"
+    assert lines[0].startswith("settling:  10 %, kinetic energy 0.63 m g d, to fall below 0.0001, ")
+    assert lines[0].endswith("M particle-steps/s") and lines[-1].startswith("settling: 100 %, ")
+
+
+def test_a_log_is_not_silent_for_long_where_grains_calm_no_further(scene, capsys, monkeypatch):
+    monkeypatch.setattr(progress_line, "SILENCE", 0.0)
+    run_blocks(50, 10, aim=Calming(lambda: 1.0, 0.1, "J"), label="settling")
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 5 and all(line.startswith("settling:   0 %, kinetic energy 1 J") for line in lines)
 
 
 def test_a_run_that_would_never_end_is_refused(scene):

@@ -295,6 +295,35 @@ def test_a_run_that_goes_on_in_another_version_says_so(place, capsys, monkeypatc
         assert file["provenance"].attrs["code_version_before"] != "9.9"
 
 
+@pytest.mark.parametrize("ending", ["failed", "failed-2", "interrupted", "interrupted-7"])
+@pytest.mark.parametrize("end", ["good", "interrupted"])
+def test_a_finished_run_that_bears_the_name_of_remains_stays(place, ending, end):
+    place.run(out=str(place.path / f"a.{ending}"))
+    if end == "good":
+        place.run(resume=True)
+    else:
+        place.interrupted(resume=True)
+        place.run(resume=True)
+    assert place.names() == ["a", f"a.{ending}"]
+    assert place.rows() == place.rows(f"a.{ending}") == WHOLE
+
+
+@pytest.mark.parametrize("file", ["summary.json", "figure.png"])
+def test_a_finished_run_with_the_name_of_remains_stays_even_if_a_file_of_it_is_gone(place, file):
+    place.run(out=str(place.path / "a.failed"))
+    (place.path / "a.failed" / file).unlink()
+    place.run(resume=True)
+    assert place.names() == ["a", "a.failed"]
+
+
+def test_remains_that_lack_only_their_figure_still_give_way(place):
+    place.interrupted()
+    with h5py.File(place.path / "a.interrupted/run.h5", "r+") as file:
+        file.attrs["state"] = "complete"  # as one killed while it was drawn
+    place.run(resume=True)
+    assert place.names() == ["a"] and place.rows() == WHOLE
+
+
 # ---- places ----------------------------------------------------------------------------------------------------------
 
 
@@ -316,6 +345,15 @@ def test_a_dangling_link_is_refused_at_the_start(place):
         UsageError, match="is a link to .*nowhere, which is not there; make that folder or remove the link"
     ):
         place.open()
+
+
+@pytest.mark.parametrize("kind", ["part-7", "old-1", "gone-123"])
+def test_a_name_that_the_next_run_would_clear_away_is_refused_at_the_start(place, kind):
+    with pytest.raises(
+        UsageError, match=f"out=.*/.a.{kind} is a name that runs at work give to their folders.*dot out"
+    ):
+        place.open(out=str(place.path / f".a.{kind}"))
+    place.open(out=str(place.path / f"a.{kind}"))
 
 
 def test_a_mount_point_is_refused_at_the_start(place, monkeypatch):

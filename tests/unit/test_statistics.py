@@ -99,6 +99,15 @@ def test_a_ratio_over_nothing_is_unknown():
     assert np.isnan(ratio_mean(np.ones(10), np.zeros(10)).value)
 
 
+@pytest.mark.parametrize("ratio", [1.0, 1 / 3, -0.7])
+def test_a_constant_ratio_has_no_error_not_one_of_round_off(ratio):
+    """Sums of the same numbers in another order differ by some 1e-16 of them, which is no scatter of the ratio."""
+    b = np.random.default_rng(3).exponential(1.0, 300)
+    found = ratio_mean(ratio * b * (1 + np.random.default_rng(4).choice([-2e-16, 0, 2e-16], 300)), b)
+    assert found.value == pytest.approx(ratio, rel=1e-15) and found.error == 0 and found.resolved
+    assert ratio_mean(b * (1 + 1e-12 * np.arange(300)), b).error > 0
+
+
 def test_a_transient_is_left_out_and_noise_is_not():
     rng, n = np.random.default_rng(4), 4000
     falsely_cut = 0

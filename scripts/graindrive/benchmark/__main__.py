@@ -205,7 +205,9 @@ def measure(name, quick, threads):
 
 def print_row(entry):
     """Print one line of the table."""
-    columns = "{scene:14} {law:16} {precision:7} {threads:7d} {kernel:8} {peer:16} {ours:8.1f} {theirs:8.2f} {ratio:7.2f}"
+    columns = (
+        "{scene:14} {law:16} {precision:7} {threads:7d} {kernel:8} {peer:16} {ours:8.1f} {theirs:8.2f} {ratio:7.2f}"
+    )
     print(columns.format(**{**entry, "ours": entry["ours"] / 1e6, "theirs": entry["theirs"] / 1e6}), flush=True)
 
 
@@ -233,7 +235,10 @@ def main(arguments=None):
         lammps.command = os.path.abspath(shutil.which(chosen.lammps))
     names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else list(SCENES)
     if not chosen.json:
-        print("scene          law              precis. threads kernel   peer             ours M/s   theirs   ratio", flush=True)
+        print(
+            "scene          law              precis. threads kernel   peer             ours M/s   theirs   ratio",
+            flush=True,
+        )
     rows = []
     for name in names:
         for entry in measure(name, chosen.quick, chosen.threads):
