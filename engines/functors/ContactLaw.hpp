@@ -12,15 +12,23 @@ struct PairGeometry {
 	Real radius1, radius2;  ///< [m]
 };
 
-/// Base of the three functors: reads the pair from YADE, asks `Self::law(friction)`, and gives YADE the forces.
+/// Base of the functors, one for each law: reads the pair from YADE, asks the law, and gives YADE the forces. Its attributes are what
+/// the law is given of the grains' material.
 ///
 /// Velocities are YADE's leapfrog ones at n-1/2, positions at n, as in LAMMPS. Periodic cells may not deform (no velGrad).
-template <class Self>
-class ContactLaw : public Registered<Self, yade::LawFunctor> {
+template <class Self, template <class> class Law_>
+class ContactLaw : public Registered<Self, yade::LawFunctor>, public Law_<Real>::Given {
 public:
+	using Law = Law_<Real>;
+	using Given = typename Law::Given;
+
 	template <class Visit>
-	static void common_attributes(Visit&& visit)
+	static void attributes(Visit&& visit)
 	{
+		Given::quantities([&](const laws::Quantity& quantity, Real Given::*member) {
+			const std::string words = std::string(quantity.meaning) + ", " + quantity.symbol + " [" + quantity.unit + "]";
+			visit(quantity.name, static_cast<Real Self::*>(member), words.c_str());
+		});
 		visit("leverArm", &ContactLaw::leverArm,
 			"where the tangential force acts: 'radius' (LAMMPS, the papers) or 'contactPoint'");
 	}
@@ -29,7 +37,8 @@ public:
 	void check() const
 	{
 		require(leverArm == "radius" || leverArm == "contactPoint", "leverArm must be 'radius' or 'contactPoint'", leverArm);
-		static_cast<const Self&>(*this).law(0);
+		Given::quantities(
+			[&](const laws::Quantity& quantity, Real Given::*member) { laws::require(quantity, this->*member, quantity.name); });
 	}
 
 	bool go(yade::shared_ptr<yade::IGeom>& igeom, yade::shared_ptr<yade::IPhys>& iphys, yade::Interaction* interaction) override
@@ -57,8 +66,7 @@ public:
 		const yade::State& s2 = *(*scene.bodies)[id2]->state;
 		const laws::SpherePair contact{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
 			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
-		const auto law = static_cast<const Self&>(*this).law(phys.tangensOfFrictionAngle);
-		return laws::respond(law, contact, phys.slip, scene.dt, arm());
+		return laws::respond(Law::of(*this, phys.tangensOfFrictionAngle), contact, phys.slip, scene.dt, arm());
 	}
 
 private:

@@ -1,6 +1,8 @@
 /// Makes a contact's reduced radius, reduced mass and friction from its two bodies.
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 
+#include "engines/laws/pair_geometry.hpp"
+
 namespace graindrive {
 
 const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation =
@@ -24,8 +26,8 @@ yade::shared_ptr<ContactPhys> contact_phys_of(
 {
 	auto phys = boost::make_shared<ContactPhys>();
 	const Real inverse = inverse_mass(scene, id1) + inverse_mass(scene, id2);
-	phys->effectiveRadius = radius1 * radius2 / (radius1 + radius2);
-	phys->effectiveMass = inverse > 0 ? 1 / inverse : 0;  // two frozen bodies: no dashpot
+	phys->effectiveRadius = laws::effective_radius(radius1, radius2);
+	phys->effectiveMass = laws::effective_mass(inverse);
 	phys->tangensOfFrictionAngle = friction;
 	return phys;
 }

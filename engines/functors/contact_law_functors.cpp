@@ -1,4 +1,4 @@
-/// The three contact laws as YADE functors.
+/// The contact laws as YADE functors.
 #include "engines/functors/contact_law_functors.hpp"
 
 namespace graindrive {
@@ -11,37 +11,17 @@ const char* const Law2_ScGeom_ContactPhys_HertzHistory::documentation =
 	"ValueError for\n"
 	"stiffnesses <= 0 or negative damping.";
 
-laws::HertzHistory<Real> Law2_ScGeom_ContactPhys_HertzHistory::law(Real friction) const
-{
-	require(normalStiffness > 0, "normalStiffness must be positive", normalStiffness);
-	require(tangentialStiffness > 0, "tangentialStiffness must be positive (friction=0 switches tangential forces off)",
-		tangentialStiffness);
-	require(normalDamping >= 0, "normalDamping must not be negative", normalDamping);
-	require(tangentialDamping >= 0, "tangentialDamping must not be negative", tangentialDamping);
-	return { normalStiffness, tangentialStiffness, normalDamping, tangentialDamping, friction };
-}
-
 const char* const Law2_ScGeom_ContactPhys_HertzRestitution::documentation =
 	"Hertz-Mindlin law damped for a given restitution, lift study (Guillard, Forterre, Pouliquen 2014, Table I).\n\n"
 	"F_n = k* delta^(3/2) - g_n delta^(1/4) v_n, F_t likewise in the tangential spring, cut at mu |F_n|.\n"
 	"Default constants: the paper's, in SI units. Stands with Ip2_FrictMat_FrictMat_ContactPhys. Raises ValueError for values "
 	"out of range.";
 
-laws::HertzRestitution<Real> Law2_ScGeom_ContactPhys_HertzRestitution::law(Real friction) const
-{
-	return laws::hertz_restitution(young, poisson, restitution, friction);
-}
-
 const char* const Law2_ScGeom_ContactPhys_SpringDashpot::documentation =
 	"Linear spring-dashpot, drum study (Oba, Otsuki 2025); the tangential spring grows only while the contact sticks.\n\n"
 	"F_n = k_n delta - eta v_n, F_t = -(k_t s + eta v_t) cut at mu F_n, eta = -2 ln e sqrt(m_eff k_n/(pi^2 + ln^2 e)).\n"
 	"Default constants: the paper's, in units of m, g, d. Stands with Ip2_FrictMat_FrictMat_ContactPhys. Raises ValueError for "
 	"values out of range.";
-
-laws::SpringDashpot<Real> Law2_ScGeom_ContactPhys_SpringDashpot::law(Real friction) const
-{
-	return laws::spring_dashpot(normalStiffness, tangentialStiffness, restitution, friction);
-}
 
 }  // namespace graindrive
 

@@ -7,6 +7,8 @@
 
 namespace graindrive {
 
+void bind_laws();
+
 namespace {
 
 namespace py = boost::python;
@@ -40,10 +42,11 @@ void bind_functors()
 	seam::bind<ContactPhys, yade::FrictPhys>(
 		"A contact under one of Graindrive's laws: reduced radius and mass of the pair, its tangential spring.");
 	seam::bind<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor>(Ip2_FrictMat_FrictMat_ContactPhys::documentation);
-	seam::bind<Law2_ScGeom_ContactPhys_HertzHistory, yade::LawFunctor>(Law2_ScGeom_ContactPhys_HertzHistory::documentation);
-	seam::bind<Law2_ScGeom_ContactPhys_HertzRestitution, yade::LawFunctor>(
-		Law2_ScGeom_ContactPhys_HertzRestitution::documentation);
-	seam::bind<Law2_ScGeom_ContactPhys_SpringDashpot, yade::LawFunctor>(Law2_ScGeom_ContactPhys_SpringDashpot::documentation);
+	for_each_law_functor([](auto kind) {
+		using Functor = std::remove_cv_t<std::remove_pointer_t<decltype(kind)>>;
+		seam::bind<Functor, yade::LawFunctor>(Functor::documentation);
+	});
+	bind_laws();
 	py::def("present_contacts", present_contacts_table, (py::arg("scene"), py::arg("law"), py::arg("contact_maker")),
 		"Contacts of the disks and spheres of a scene (O._sceneObj) at the present positions, those that YADE's next step will\n"
 		"find, by one of our Law2_ functors and our Ip2_: arrays as of `contact_table`, without point, with slip [m] along z x "

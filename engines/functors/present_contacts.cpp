@@ -28,11 +28,15 @@ bool is(const yade::LawFunctor& law, const yade::Scene& scene, Answer& answer)
 Answer answer_of(const yade::LawFunctor& law, const yade::Scene& scene)
 {
 	Answer answer;
-	if (is<Law2_ScGeom_ContactPhys_HertzHistory>(law, scene, answer) ||
-		is<Law2_ScGeom_ContactPhys_HertzRestitution>(law, scene, answer) ||
-		is<Law2_ScGeom_ContactPhys_SpringDashpot>(law, scene, answer))
-		return answer;
-	throw std::invalid_argument("present_contacts knows Graindrive's three laws, got " + law.getClassName());
+	bool found = false;
+	std::string ours;
+	for_each_law_functor([&](auto kind) {
+		using Functor = std::remove_cv_t<std::remove_pointer_t<decltype(kind)>>;
+		found = found || is<Functor>(law, scene, answer);
+		ours += std::string(ours.empty() ? "" : ", ") + Functor::class_name;
+	});
+	if (found) return answer;
+	throw std::invalid_argument("present_contacts knows Graindrive's laws, " + ours + ", got " + law.getClassName());
 }
 
 struct Extent {
@@ -97,8 +101,7 @@ std::optional<PresentContact> contact_of(const yade::Scene& scene, std::pair<int
 	const yade::Interaction* known = real_interaction(*(*scene.bodies)[id1], id2);
 	if (known) id1 = known->getId1(), id2 = known->getId2();
 	const yade::Body &one = *(*scene.bodies)[id1], &two = *(*scene.bodies)[id2];
-	const Vector3r d = separation(scene, id1, id2, periods);
-	const Real overlap = radius_of(one) + radius_of(two) - d.norm();
+	const auto [normal, overlap] = laws::placement(separation(scene, id1, id2, periods), radius_of(one), radius_of(two));
 	if (!(overlap >= 0) || (one.isClumpMember() && one.clumpId == two.clumpId)) return {};
 	const auto* carried = known ? dynamic_cast<const ContactPhys*>(known->phys.get()) : nullptr;
 	const auto made = carried ? nullptr
@@ -106,7 +109,7 @@ std::optional<PresentContact> contact_of(const yade::Scene& scene, std::pair<int
 									contact_maker.friction_between(*one.material, *two.material));
 	const ContactPhys& phys = carried ? *carried : *made;
 	if (phys.effectiveMass == 0) return {};
-	const PairGeometry pair{ d / d.norm(), overlap, radius_of(one), radius_of(two) };
+	const PairGeometry pair{ normal, overlap, radius_of(one), radius_of(two) };
 	return PresentContact{ id1, id2, pair.normal, overlap, answer(pair, phys, id1, id2) };
 }
 

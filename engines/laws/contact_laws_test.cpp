@@ -1,5 +1,5 @@
 /// Contact laws as functions: action and reaction, objectivity, two against three dimensions, float, tables, bad input.
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/registry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 /// Impacts of two disks under each law against closed forms: depth, force, duration, restitution, friction, rotation.
 #include <gtest/gtest.h>
 
+#include "engines/laws/registry.hpp"
 #include "engines/laws/two_disks.hpp"
 
 using namespace graindrive;

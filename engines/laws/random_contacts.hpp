@@ -2,7 +2,7 @@
 #pragma once
 #include <random>
 
-#include "engines/laws/yade_laws.hpp"
+#include "engines/laws/registry.hpp"
 
 namespace graindrive::laws {
 

@@ -1,6 +1,7 @@
 /// Two disks or spheres in contact: what a law needs to know of them, and what its answer does to them.
 #pragma once
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/contact.hpp"
+#include "engines/laws/pair_geometry.hpp"
 
 namespace graindrive::laws {
 
@@ -49,11 +50,10 @@ PairResponse respond(const Law& law, const SpherePair& pair, const Vector3r& sli
 	const Vector3r& n = pair.normal;
 	const Real shorten = lever_loss(lever, pair.overlap);
 	const Real arm1 = pair.radius1 - shorten, arm2 = pair.radius2 - shorten;
-	const Vector3r approach = pair.velocity1 - pair.velocity2;
-	const Real closing = approach.dot(n);
-	const Vector3r tangential = approach - closing * n + (arm1 * pair.spin1 + arm2 * pair.spin2).cross(n);
-	const Kinematics<Real, Vector3r> contact{ pair.overlap, -closing, tangential, pair.effective_radius, pair.effective_mass,
-		dt };
+	const auto motion =
+		relative_motion(n, Vector3r(pair.velocity2 - pair.velocity1), Vector3r(arm1 * pair.spin1 + arm2 * pair.spin2));
+	const Kinematics<Real, Vector3r> contact{ pair.overlap, motion.normal, motion.tangential, pair.effective_radius,
+		pair.effective_mass, dt };
 	const auto answer = law(contact, into_tangent_plane(slip, n));
 	const Vector3r twist = n.cross(answer.tangential);
 	return { answer.normal * n, -answer.tangential, arm1 * twist, arm2 * twist, answer.slip, answer.slipping };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/contact.hpp"
 
 namespace graindrive::laws {
 

@@ -1,5 +1,5 @@
 /// YADE's own laws as functions: their equations, Coulomb's bound, what is remembered, and bad input. Against YADE: loop/yade_laws_test.py.
-#include "engines/laws/yade_laws.hpp"
+#include "engines/laws/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ TEST(YadeLaws, refuse_properties_out_of_range_with_the_value)
 {
 	const auto says = [](const char* words, auto&& make) { EXPECT_TRUE(mentions(complaint(make), words)) << complaint(make); };
 	says("Young's modulus must be positive [Pa], got -1", [] { cundall_strack(-1, 0.3, 0.5); });
-	says("k_t/k_n, must not be negative, got -0.1", [] { cundall_strack(1e6, -0.1, 0.5); });
+	says("k_t/k_n (YADE's poisson) must not be negative, got -0.1", [] { cundall_strack(1e6, -0.1, 0.5); });
 	says("friction coefficient must not be negative, got -2", [] { cundall_strack(1e6, 0.3, -2); });
 	says("Poisson's ratio must lie in (-1, 0.5], got 0.6", [] { hertz_mindlin(1e6, 0.6, 0, 0, 0.5); });
 	says("normal damping ratio must not be negative, got -0.2", [] { hertz_mindlin(1e6, 0.3, -0.2, 0, 0.5); });

@@ -25,11 +25,25 @@ const char* const GrainLoop::documentation =
 
 loop::ContactLaw GrainLoop::contact_law() const
 {
-	if (law == "springDashpot") return laws::spring_dashpot(normalStiffness, tangentialStiffness, restitution, friction);
-	if (law == "cundallStrack") return laws::cundall_strack(young, poisson, friction);
-	if (law == "hertzMindlin") return laws::hertz_mindlin(young, poisson, normalDampingRatio, tangentialDampingRatio, friction);
-	if (law == "hertzRestitution") return laws::hertz_restitution(young, poisson, restitution, friction);
-	return laws::HertzHistory<Real>{ normalStiffness, tangentialStiffness, normalDamping, tangentialDamping, friction };
+	const auto made = [&](const auto& kind) -> loop::ContactLaw {
+		using Law = std::decay_t<decltype(kind)>;
+		typename Law::Given given;
+		Law::Given::quantities([&](const laws::Quantity& q, auto member) { given.*member = number(q.name); });
+		return Law::of(given, friction);
+	};
+	return std::visit(made, laws::law_named(law));
+}
+
+/// The attribute of that name.
+Real GrainLoop::number(const std::string& name) const
+{
+	const Real* found = nullptr;
+	attributes([&](const char* attribute, auto member, const char*) {
+		if constexpr (std::is_same_v<decltype(member), Real GrainLoop::*>)
+			if (name == attribute) found = &(this->*member);
+	});
+	if (!found) throw std::logic_error("GrainLoop has no attribute " + name + ", which a law of the registry takes");
+	return *found;
 }
 
 loop::Scene GrainLoop::settings() const

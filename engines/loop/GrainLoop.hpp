@@ -19,19 +19,19 @@ public:
 	static void attributes(Visit&& visit)
 	{
 		using Self = GrainLoop;
+		const auto given = [&](const char* name, Real Self::*member) { visit(name, member, laws::explained(name).c_str()); };
 		visit("law", &Self::law,
-			"'hertzHistory', 'hertzRestitution' or 'springDashpot': the law of the Law2_ functor of that name; 'cundallStrack' "
-			"or\n"
-			"'hertzMindlin': YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one "
-			"material");
-		visit("normalStiffness", &Self::normalStiffness, "K_n [Pa] (hertzHistory) or k_n [N/m] (springDashpot)");
-		visit("tangentialStiffness", &Self::tangentialStiffness, "K_t [Pa] or k_t [N/m]");
-		visit("normalDamping", &Self::normalDamping, "gamma_n [1/(m s)] (hertzHistory)");
-		visit("tangentialDamping", &Self::tangentialDamping, "gamma_t [1/(m s)] (hertzHistory)");
-		visit("young", &Self::young, "Young's modulus [Pa] (hertzRestitution, hertzMindlin, cundallStrack)");
-		visit("poisson", &Self::poisson,
-			"Poisson's ratio [-] (hertzRestitution, hertzMindlin); what YADE takes as k_t/k_n (cundallStrack)");
-		visit("restitution", &Self::restitution, "coefficient of restitution [-] (hertzRestitution, springDashpot)");
+			(laws::listed(laws::law_names(), " or ", "'") +
+				": the law of the Law2_ functor of that name; cundallStrack and hertzMindlin are\n"
+				"YADE's Law2_ScGeom_FrictPhys_CundallStrack, Law2_ScGeom_MindlinPhys_Mindlin, for disks of one material")
+				.c_str());
+		given("normalStiffness", &Self::normalStiffness);
+		given("tangentialStiffness", &Self::tangentialStiffness);
+		given("normalDamping", &Self::normalDamping);
+		given("tangentialDamping", &Self::tangentialDamping);
+		given("young", &Self::young);
+		given("poisson", &Self::poisson);
+		given("restitution", &Self::restitution);
 		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 compiles friction and its history out");
 		visit("gravity", &Self::gravity, "acceleration [m/s^2]");
 		visit("periods", &Self::periods, "periods of the box in x and y [m], 0 where it is not periodic");
@@ -61,11 +61,11 @@ public:
 		visit("wallSprings", &Self::wallSprings,
 			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
 		visit("springs", &Self::springs,
-			"id, id, tangential spring [m] of the contacts at the last sync, for O.save; with cundallStrack and hertzMindlin "
-			"the\n"
-			"elastic tangential force [N] that these laws remember");
-		visit("normalDampingRatio", &Self::normalDampingRatio, "MindlinPhys.betan, of critical [-] (hertzMindlin)");
-		visit("tangentialDampingRatio", &Self::tangentialDampingRatio, "MindlinPhys.betas, of critical [-] (hertzMindlin)");
+			("id, id, tangential spring [m] of the contacts at the last sync, for O.save; with " +
+				laws::laws_that_remember_forces() + " the\nelastic tangential force [N] that these laws remember")
+				.c_str());
+		given("normalDampingRatio", &Self::normalDampingRatio);
+		given("tangentialDampingRatio", &Self::tangentialDampingRatio);
 		visit("damping", &Self::damping,
 			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
 			"dt/2)))");
@@ -171,6 +171,8 @@ private:
 	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();
 
 	loop::ContactLaw contact_law() const;
+	Real number(const std::string& name) const;
+	void check_material() const;
 	loop::Scene settings() const;
 	void make_step();
 	void build();

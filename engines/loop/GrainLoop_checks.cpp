@@ -1,7 +1,7 @@
 /// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, disks that meet across an axis left free.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <set>
 
 #include "engines/loop/GrainLoop.hpp"
 
@@ -15,22 +15,14 @@ constexpr std::size_t numbers_per_wall = 9;
 
 void GrainLoop::check() const
 {
-	const char* const laws_known[] = { "hertzHistory", "hertzRestitution", "springDashpot", "cundallStrack", "hertzMindlin" };
-	require(std::count(std::begin(laws_known), std::end(laws_known), law) == 1,
-		"GrainLoop.law must be 'hertzHistory', 'hertzRestitution', 'springDashpot', 'cundallStrack' or 'hertzMindlin'", law);
+	const std::vector<std::string> known = laws::law_names();
+	require(std::count(known.begin(), known.end(), law) == 1,
+		("GrainLoop.law must be " + laws::listed(known, " or ", "'")).c_str(), law);
+	check_material();
 	require(damping >= 0 && damping < 1, "GrainLoop.damping must lie in [0, 1)", damping);
 	require(precision == "double" || precision == "single", "GrainLoop.precision must be 'double' or 'single'", precision);
-	require(friction >= 0, "GrainLoop.friction must not be negative", friction);
-	require(normalStiffness > 0, "GrainLoop.normalStiffness must be positive", normalStiffness);
-	require(tangentialStiffness > 0, "GrainLoop.tangentialStiffness must be positive (friction=0 switches tangential forces off)",
-		tangentialStiffness);
-	require(normalDamping >= 0 && tangentialDamping >= 0, "GrainLoop.normalDamping and tangentialDamping must not be negative",
-		std::min(normalDamping, tangentialDamping));
 	require(
 		gravity.allFinite() && gravity[2] == 0, "GrainLoop.gravity must be finite and in the plane, 0 in z", gravity.transpose());
-	require(std::isfinite(normalStiffness + tangentialStiffness + normalDamping + tangentialDamping + friction),
-		"GrainLoop's stiffnesses, dampings and friction must be finite", normalStiffness);
-	require(std::isfinite(young), "GrainLoop.young must be finite", young);
 	require(std::isfinite(skin) && skin >= 0, "GrainLoop.skin must be finite and not negative", skin);
 	require(threads >= 1 && threads <= 256, "GrainLoop.threads must lie in 1..256", threads);
 	require(periods.allFinite() && periods[0] >= 0 && periods[1] >= 0 && periods[2] == 0,
@@ -51,10 +43,20 @@ void GrainLoop::check() const
 	require(bounds.empty() || (bounds[0] <= bounds[2] && bounds[1] <= bounds[3]),
 		"GrainLoop.bounds must be xLow, yLow, xHigh, yHigh with low <= high", "the other order");
 	require(springs.size() % 3 == 0, "GrainLoop.springs must hold three numbers a contact", springs.size());
-	contact_law();
-	// Their own checks, whatever the law in use; cundallStrack takes other numbers for Poisson's ratio.
-	laws::hertz_restitution(young, law == "cundallStrack" ? 0 : poisson, restitution, friction);
-	laws::hertz_mindlin(1, 0, normalDampingRatio, tangentialDampingRatio, friction);
+}
+
+/// What laws are given, whatever the law in use; of several rules for one number that of the law in use holds.
+void GrainLoop::check_material() const
+{
+	std::set<std::string> checked;
+	const auto check_numbers_of = [&](const auto& kind) {
+		std::decay_t<decltype(kind)>::Given::quantities([&](const laws::Quantity& q, auto) {
+			if (checked.insert(q.name).second) laws::require(q, number(q.name), std::string("GrainLoop.") + q.name);
+		});
+	};
+	std::visit(check_numbers_of, laws::law_named(law));
+	laws::Laws::for_each(check_numbers_of);
+	laws::require(laws::friction_coefficient, friction, "GrainLoop.friction");
 }
 
 /// A cell that is long on purpose leaves an axis free; one that repeats must do so with YADE's own length.

@@ -147,15 +147,15 @@ void bind_loop()
 		"Check that GrainLoop can move what stands in O.bodies, O.cell and O.engines, before the first step. Raises ValueError "
 		"or\n"
 		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
-	cls.def("contacts", contacts,
+	const std::string of_contacts =
 		"Contacts of the last step, all at the positions of its beginning, as YADE's are after a step; those at the present "
 		"positions\n"
 		"while a step is under way (in engines before GrainLoop). Arrays: i, j, slipping, overlap [m], slip of i along z x n [m] "
-		"([N] with cundallStrack "
-		"and\n"
-		"hertzMindlin, which remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to "
-		"j,\n"
-		"normal_force and tangential_force on j [N], shape (n, 3).");
+	    "([N] with " +
+		laws::laws_that_remember_forces() +
+		",\nwhich remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to j,\n"
+		"normal_force and tangential_force on j [N], shape (n, 3).";
+	cls.def("contacts", contacts, of_contacts.c_str());
 	cls.def("presentContacts", present_contacts,
 		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
 		"with\n"

@@ -102,6 +102,24 @@ std::string read_checkpoint(const std::string& path, Contents expected)
 	return body;
 }
 
+void visit_law(Packer& pack, const laws::ContactLaw& law)
+{
+	pack(std::string(laws::name_of(law)));
+	pack(laws::constants_of(law));
+}
+
+void visit_law(Unpacker& unpack, laws::ContactLaw& law)
+{
+	std::string name;
+	std::vector<Real> constants;
+	unpack(name), unpack(constants);
+	try {
+		law = laws::law_with(name, constants);
+	} catch (const std::invalid_argument& refusal) {
+		throw std::runtime_error(std::string("checkpoint: ") + refusal.what());
+	}
+}
+
 void Stepper::save(const std::string& path, const std::string& companion)
 {
 	if (body_forces_known) throw std::runtime_error("checkpoint " + path + ": a step is under way; save between steps");

@@ -11,9 +11,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "engines/laws/registry.hpp"
+
 namespace graindrive::loop {
 
-constexpr std::uint64_t checkpoint_version = 6;
+constexpr std::uint64_t checkpoint_version = 7;
 
 /// What a file holds, in the 16 letters that it begins with.
 enum class Contents { loop, yade_scene };
@@ -92,5 +94,10 @@ private:
 		return bytes.data() + at - count;
 	}
 };
+
+/// A law as its name and constants, so that a file does not depend on the order of the registry.
+void visit_law(Packer& pack, const laws::ContactLaw& law);
+/// @throws std::runtime_error naming a law that this build does not have as the file has it
+void visit_law(Unpacker& unpack, laws::ContactLaw& law);
 
 }  // namespace graindrive::loop

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "engines/laws/every_law.hpp"
 #include "engines/loop/test_scenes.hpp"
 
 using namespace graindrive;
@@ -91,6 +92,28 @@ TEST_F(Checkpoint, damaged_and_foreign_files_are_refused_with_the_reason)
 	EXPECT_NE(refusal().find("not a checkpoint"), std::string::npos) << refusal();
 	std::remove(path.c_str());
 	EXPECT_NE(refusal().find("cannot be opened"), std::string::npos) << refusal();
+}
+
+TEST_F(Checkpoint, a_law_is_kept_by_its_name_with_every_constant)
+{
+	laws::for_every_law_by_default([](const auto& law) {
+		Packer pack;
+		visit_law(pack, law);
+		Unpacker unpack(pack.bytes);
+		ContactLaw kept;
+		visit_law(unpack, kept);
+		EXPECT_TRUE(laws::same(kept, law)) << law.name;
+	});
+	Packer pack;
+	pack(std::string("thornton")), pack(std::vector<Real>{ 1, 2 });
+	Unpacker unpack(pack.bytes);
+	ContactLaw kept;
+	try {
+		visit_law(unpack, kept);
+		FAIL() << "a law that this build does not have was taken";
+	} catch (const std::runtime_error& error) {
+		EXPECT_NE(std::string(error.what()).find("got thornton"), std::string::npos) << error.what();
+	}
 }
 
 TEST_F(Checkpoint, a_failed_write_leaves_the_old_file)

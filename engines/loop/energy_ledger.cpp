@@ -9,41 +9,6 @@ namespace graindrive::loop {
 
 namespace {
 
-/// A contact's parts of one law: elastic force and energy, stiffness of the tangential spring, dashpots.
-struct Parts {
-	double elastic, energy, k_t, c_n, c_t;
-};
-
-struct PartsOf {
-	double radius, mass, overlap;
-
-	Parts operator()(const laws::HertzHistory<Real>& l) const
-	{
-		const double h = std::sqrt(radius * overlap);
-		return { l.k_n * h * overlap, 0.4 * l.k_n * h * overlap * overlap, l.k_t * h, l.gamma_n * mass * h,
-			l.gamma_t * mass * h };
-	}
-	Parts operator()(const laws::HertzRestitution<Real>& l) const
-	{
-		const double k = 4.0 / 3 * l.effective_young * std::sqrt(radius), k_t = l.tangential_ratio * k, root = std::sqrt(overlap),
-					 fourth = std::sqrt(root);
-		return { k * overlap * root, 0.4 * k * overlap * overlap * root, k_t * root,
-			std::sqrt(5.0) * l.damping_fraction * std::sqrt(mass * k) * fourth,
-			std::sqrt(10.0 / 3) * l.damping_fraction * std::sqrt(mass * k_t) * fourth };
-	}
-	Parts operator()(const laws::SpringDashpot<Real>& l) const
-	{
-		const double eta = l.damping * std::sqrt(mass);
-		return { l.k_n * overlap, 0.5 * l.k_n * overlap * overlap, l.k_t, eta, eta };
-	}
-	/// Not a law that the ledger can explain; `Stepper::track_energy` refuses it.
-	template <class Law>
-	Parts operator()(const Law&) const
-	{
-		return {};
-	}
-};
-
 double booked(Halves now, double& pending) { return std::exchange(pending, now.after) + now.before; }
 
 }  // namespace
@@ -59,26 +24,27 @@ struct EnergyLedger::Sums {
 
 EnergyLedger::Past EnergyLedger::meet(const MetContact& c, const Past& before, Sums& sums) const
 {
-	const Parts parts = std::visit(PartsOf{ c.effective_radius, c.effective_mass, c.overlap }, law);
+	const laws::Squeezed<Real> squeezed{ c.overlap, c.effective_radius, c.effective_mass };
+	const laws::Terms<Real> terms = std::visit([&](const auto& l) { return l.terms(squeezed); }, law);
 	const double half = dt / 2;
-	const double normal_dashpot = parts.c_n * c.v_n_before;
-	sums.elastic_normal += parts.energy;
-	sums.elastic_work += before.elastic_after + parts.elastic * c.v_n_before * half;
+	const double normal_dashpot = terms.dashpot * c.v_n_before;
+	sums.elastic_normal += terms.energy;
+	sums.elastic_work += before.elastic_after + terms.elastic * c.v_n_before * half;
 	sums.normal_damping.before += normal_dashpot * c.v_n_before * half;
 	sums.normal_damping.after += normal_dashpot * c.v_n_after * half;
-	Past next{ c.key, 0, 0, 0, 0, parts.elastic * c.v_n_after * half };
+	Past next{ c.key, 0, 0, 0, 0, terms.elastic * c.v_n_after * half };
 	if (!with_friction) return next;
 
 	const laws::Kinematics<Real, Real> contact{ c.overlap, c.v_n_before, c.v_t_before, c.effective_radius, c.effective_mass, dt };
 	const auto response = std::visit([&](const auto& l) { return l(contact, c.slip_before); }, law);
-	const double dashpot = response.slipping ? 0 : parts.c_t * c.v_t_before;
+	const double dashpot = response.slipping ? 0 : terms.tangential_dashpot * c.v_t_before;
 	next.spring_force = -response.tangential - dashpot;
-	next.stiffness = parts.k_t;
+	next.stiffness = terms.tangential_stiffness;
 	next.slip = response.slip;
 	next.moved_after = c.v_t_after * dt;
 	const double moved = c.v_t_before * dt;
 	const double stretched = before.stiffness * before.slip + next.stiffness * next.slip;
-	sums.elastic_tangential += 0.5 * next.stiffness * next.slip * next.slip;
+	sums.elastic_tangential += std::visit([&](const auto& l) { return tangential_energy(l, terms, next.slip); }, law);
 	sums.tangential_damping.before += dashpot * c.v_t_before * half;
 	sums.tangential_damping.after += dashpot * c.v_t_after * half;
 	sums.friction += 0.5 * (before.spring_force + next.spring_force) * moved - 0.5 * stretched * (next.slip - c.slip_before);

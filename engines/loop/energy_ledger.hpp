@@ -5,7 +5,7 @@
 ///   K_n = sum 1/2 m v-.v+,   K_n - K_{n-1} = sum 1/2 F_{n-1}.v dt + 1/2 F_n.v dt,  v = v_{n-1/2} that of the interval between them
 ///
 /// whose sum over steps is the drives' sum F.(v- + v+)/2 dt. Every force is split into its parts and every part's power booked so.
-///   elastic        of the closed form: Hertz U_n = 2/5 K_n sqrt(R_eff) delta^{5/2}, linear 1/2 k_n delta^2; U_t = 1/2 k_t s^2
+///   elastic        of the closed form: U_n of the law's `terms`, for Hertz 2/5 K_n sqrt(R_eff) delta^{5/2}; U_t = 1/2 k_t s^2
 ///   damping        by the dashpots' forces, at the velocities that they were computed with
 ///                  (the tangential one while the contact sticks)
 ///   friction       the work of the tangential force where Coulomb's bound is active, less what the spring takes up, (k_t s)_mean Delta s.
@@ -82,7 +82,8 @@ public:
 	template <class Visitor>
 	void visit(Visitor&& visit)
 	{
-		visit(law), visit(with_friction), visit(dt), visit(steps), visit(now), visit(past), visit(body_work), visit(pending),
+		visit_law(visit, law);
+		visit(with_friction), visit(dt), visit(steps), visit(now), visit(past), visit(body_work), visit(pending),
 			visit(pending_bodies), visit(fallen);
 	}
 

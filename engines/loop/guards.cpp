@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "engines/laws/critical_step.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
@@ -44,49 +45,21 @@ void check_side(bool periodic, double low, double high, const char* name)
 		"_high above ", name, "_low, got ", low, " and ", high);
 }
 
-/// Leapfrog's limit of a damped oscillator.
-double limit(double stiffness, double dashpot, double mass)
+laws::Terms<Real> terms_of(const ContactLaw& law, const laws::Squeezed<Real>& contact)
 {
-	const double omega = std::sqrt(stiffness / mass), zeta = dashpot / (2 * std::sqrt(stiffness * mass));
-	return 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
+	return std::visit([&](const auto& l) { return l.terms(contact); }, law);
 }
 
-struct Stiffness {
-	double normal, tangential, normal_dashpot, tangential_dashpot;
-};
-
-struct StiffnessOf {
-	double radius, mass, overlap;  // effective; overlap in length
-
-	Stiffness operator()(const laws::HertzHistory<Real>& l) const
-	{
-		const double h = std::sqrt(radius * overlap);
-		return { 1.5 * l.k_n * h, l.k_t * h, l.gamma_n * mass * h, l.gamma_t * mass * h };
-	}
-	Stiffness operator()(const laws::HertzRestitution<Real>& l) const
-	{
-		const double k = 4.0 / 3 * l.effective_young * std::sqrt(radius), root = std::sqrt(overlap), fourth = std::sqrt(root),
-					 c = l.tangential_ratio;
-		return { 1.5 * k * root, c * k * root, std::sqrt(5.0) * l.damping_fraction * std::sqrt(mass * k) * fourth,
-			std::sqrt(10.0 / 3) * l.damping_fraction * std::sqrt(mass * c * k) * fourth };
-	}
-	Stiffness operator()(const laws::SpringDashpot<Real>& l) const
-	{
-		const double eta = l.damping * std::sqrt(mass);
-		return { l.k_n, l.k_t, eta, eta };
-	}
-	Stiffness operator()(const laws::CundallStrack<Real>& l) const
-	{
-		const double k = 2 * l.young * radius;
-		return { k, l.tangential_ratio * k, 0, 0 };
-	}
-	Stiffness operator()(const laws::HertzMindlin<Real>& l) const
-	{
-		const double h = std::sqrt(radius * overlap), dashpot = std::sqrt(mass * h);
-		return { 2 * l.effective_young * h, 8 * l.effective_shear * h, l.normal_dashpot * dashpot,
-			l.tangential_dashpot * dashpot };
-	}
-};
+/// Of the contact's two directions, each with what yields in it; infinite where nothing does.
+double critical_step_of(const Scene& scene, const laws::Terms<Real>& k, double inverse_pressed_mass, double inverse_sliding_mass)
+{
+	double smallest = HUGE_VAL;
+	if (inverse_pressed_mass > 0) smallest = laws::critical_step(k.stiffness, k.dashpot, 1 / inverse_pressed_mass);
+	if (inverse_sliding_mass > 0 && scene.friction && k.tangential_stiffness > 0)
+		smallest =
+			std::min(smallest, laws::critical_step(k.tangential_stiffness, k.tangential_dashpot, 1 / inverse_sliding_mass));
+	return smallest;
+}
 
 /// What a member of a body may touch: a grain, or a member of another body.
 struct Partner {
@@ -139,17 +112,11 @@ std::vector<std::size_t> telling_grains(const Scene& scene)
 
 double critical_step_of(const Scene& scene, const Partner& one, const Partner& other, double overlap)
 {
-	const double inverse_mass = one.inverse_mass + other.inverse_mass;
-	const double radius = one.radius * other.radius / (one.radius + other.radius);
 	const double depth = overlap * std::min(one.radius, other.radius);
-	const Stiffness k = std::visit(StiffnessOf{ radius, inverse_mass > 0 ? 1 / inverse_mass : 0, depth }, scene.law);
-	double smallest = HUGE_VAL;
-	if (const double yields = one.inverse_pressed_mass + other.inverse_pressed_mass; yields > 0)
-		smallest = limit(k.normal, k.normal_dashpot, 1 / yields);
-	if (const double yields = one.inverse_sliding_mass + other.inverse_sliding_mass;
-		yields > 0 && scene.friction && k.tangential > 0)
-		smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, 1 / yields));
-	return smallest;
+	const laws::Terms<Real> terms = terms_of(scene.law,
+		{ depth, laws::effective_radius(one.radius, other.radius), laws::effective_mass(one.inverse_mass + other.inverse_mass) });
+	return critical_step_of(scene, terms, one.inverse_pressed_mass + other.inverse_pressed_mass,
+		one.inverse_sliding_mass + other.inverse_sliding_mass);
 }
 
 /// A pair is met through one image: the nearest. Where a second image could touch as well, a contact would be lost.
@@ -206,6 +173,7 @@ void check_scene(const Scene& scene)
 	check_side(scene.box.periodic_y, scene.box.y_low, scene.box.y_high, "y");
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) check_body(scene.bodies[b], b);
+	laws::require_in_range(scene.law);
 	const double critical = critical_time_step(scene);
 	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,
 		", got ", scene.dt, "; lower it or take softer grains");
@@ -222,11 +190,9 @@ double critical_time_step(const Scene& scene, double overlap)
 	double smallest = HUGE_VAL;
 	for (const Grain& g : scene.grains) {
 		if (g.body != free_grain) continue;
-		const double mass = g.mass / 2, depth = overlap * g.radius;
-		const Stiffness k = std::visit(StiffnessOf{ g.radius / 2, mass, depth }, scene.law);
-		smallest = std::min(smallest, limit(k.normal, k.normal_dashpot, mass));
-		if (scene.friction && k.tangential > 0)
-			smallest = std::min(smallest, limit(k.tangential, k.tangential_dashpot, mass / (1 + scene.spin_response)));
+		const double mass = g.mass / 2;
+		const laws::Terms<Real> terms = terms_of(scene.law, { overlap * g.radius, g.radius / 2, mass });
+		smallest = std::min(smallest, critical_step_of(scene, terms, 1 / mass, (1 + scene.spin_response) / mass));
 	}
 	return smallest;
 }

@@ -107,7 +107,7 @@ void Stepper::check_pairs() const
 		const double allowed = state.guards.largest_overlap * std::min(a.radius, b.radius),
 					 nearest = a.radius + b.radius - allowed;
 		if (d.x * d.x + d.y * d.y >= nearest * nearest) continue;
-		const double overlap = a.radius + b.radius - std::hypot(d.x, d.y);
+		const double overlap = placement(a, b, state.scene.box).overlap;
 		throw std::runtime_error(sentence(now(), introduce(pair.first), " and ", introduce(pair.second), " overlap by ",
 			overlap / std::min(a.radius, b.radius), " of a radius, more than ", state.guards.largest_overlap,
 			"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));

@@ -1,16 +1,14 @@
 /// The two inner functions of the loop, pair forces and motion, as pointers: one set for each processor generation, law and precision.
 #pragma once
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "engines/laws/yade_laws.hpp"
+#include "engines/laws/registry.hpp"
 #include "engines/loop/grain_row.hpp"
 
 namespace graindrive::loop {
 
-using ContactLaw = std::variant<laws::HertzHistory<Real>, laws::HertzRestitution<Real>, laws::SpringDashpot<Real>,
-	laws::CundallStrack<Real>, laws::HertzMindlin<Real>>;
+using laws::ContactLaw;
 
 enum class Precision { double_, single };  ///< of the contacts; positions and velocities are always double
 enum class Processor { avx512, avx2, portable };
@@ -60,10 +58,10 @@ struct KernelData {
 	double drift;                               ///< time over which velocities move positions [s]
 	double gravity_x, gravity_y;                ///< [m/s^2]
 	double spin_response;                       ///< m R^2 / I: 2 for disks, 0 where grains may not rotate
-	const ContactLaw* law;
-	double damping = 0;                     ///< Cundall's non-viscous damping [-]; 0: none
-	bool damps_gravity = true;              ///< gravity is damped with the other forces
-	const OutsideForce* outside = nullptr;  ///< by row, or none; read in damped scenes only
+	const void* law;                            ///< the law of `KernelChoice`, in numbers of the precision
+	double damping = 0;                         ///< Cundall's non-viscous damping [-]; 0: none
+	bool damps_gravity = true;                  ///< gravity is damped with the other forces
+	const OutsideForce* outside = nullptr;      ///< by row, or none; read in damped scenes only
 };
 
 struct Kernel {
@@ -77,7 +75,7 @@ struct Kernel {
 };
 
 struct KernelChoice {
-	std::size_t law;  ///< index in `ContactLaw`
+	std::size_t law;  ///< index in `laws::Laws`
 	bool friction;
 	Precision precision;
 };

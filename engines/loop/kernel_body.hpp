@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <emmintrin.h>
 
+#include "engines/laws/pair_geometry.hpp"
 #include "engines/loop/damping.hpp"
 #include "engines/loop/row_transpose.hpp"
 
@@ -17,7 +18,9 @@ namespace {
 /// What the law needs to know of a pack of pairs, and where the pack stands.
 template <class S>
 struct PackGeometry {
-	S n_x, n_y, overlap, normal_velocity, tangential_velocity;
+	laws::Planar<S> n;
+	S overlap;
+	laws::RelativeMotion<S, S> motion;
 	typename S::Mask touching;
 	std::uint32_t at;
 };
@@ -37,15 +40,12 @@ inline bool pack_geometry(const S column[6], PackGeometry<S>& contact)
 	if (!any(contact.touching)) return false;
 	const S distance = sqrt(square);
 	const S inverse = S(1) / distance;
-	const S n_x = dx * inverse, n_y = dy * inverse;
-	contact.n_x = n_x;
-	contact.n_y = n_y;
+	contact.n = { dx * inverse, dy * inverse };
 	contact.overlap = max(reach - distance, S(0));
-	contact.normal_velocity = dvx * n_x + dvy * n_y;
 	if constexpr (Law::acts_at_contact_point)
-		contact.tangential_velocity = surface_speed + (reach * inverse) * (dvx * n_y - dvy * n_x);
+		contact.motion = laws::relative_motion<S>(contact.n, { dvx, dvy }, surface_speed, reach * inverse);
 	else
-		contact.tangential_velocity = surface_speed + (dvx * n_y - dvy * n_x);
+		contact.motion = laws::relative_motion<S>(contact.n, { dvx, dvy }, surface_speed);
 	return true;
 }
 
@@ -56,8 +56,8 @@ inline PackForces<S> pack_forces(
 {
 	laws::Kinematics<S, S> contact;
 	contact.overlap = pack.overlap;
-	contact.normal_velocity = pack.normal_velocity;
-	contact.tangential_velocity = pack.tangential_velocity;
+	contact.normal_velocity = pack.motion.normal;
+	contact.tangential_velocity = pack.motion.tangential;
 	contact.effective_radius = effective_radius;
 	contact.effective_mass = effective_mass;
 	contact.dt = dt;
@@ -65,10 +65,10 @@ inline PackForces<S> pack_forces(
 	const S zero(0);
 	const auto response = law(contact, slip);
 	const S normal = select(pack.touching, response.normal, zero);
-	if constexpr (!Friction) return { -(normal * pack.n_x), -(normal * pack.n_y), zero, normal, zero };
+	if constexpr (!Friction) return { -(normal * pack.n.x), -(normal * pack.n.y), zero, normal, zero };
 	const S friction = select(pack.touching, response.tangential, zero);
-	PackForces<S> forces{ -(normal * pack.n_x) - friction * pack.n_y, friction * pack.n_x - normal * pack.n_y, friction, normal,
-		select(pack.touching, response.slip, zero) };
+	const laws::Planar<S> force = laws::force_on_first(pack.n, normal, friction);
+	PackForces<S> forces{ force.x, force.y, friction, normal, select(pack.touching, response.slip, zero) };
 	if constexpr (Law::acts_at_contact_point) forces.normal = (contact.overlap * S(0.5)) * friction;
 	return forces;
 }
@@ -94,7 +94,14 @@ private:
 	typedef double Two __attribute__((vector_size(16)));
 	typedef P Four __attribute__((vector_size(4 * sizeof(P))));
 
-	static Law narrowed(const KernelData& data);
+	/// Number by number: from a copy as a whole the compiler fuses other products, and results would differ in the last bit.
+	static inline Law law_of(const KernelData& data)
+	{
+		Law law{};
+		const Law& given = *static_cast<const Law*>(data.law);
+		Law::constants([&](const laws::Quantity&, auto constant) { law.*constant = given.*constant; });
+		return law;
+	}
 
 	struct Work {
 		std::uint32_t block_begin, block_end, n_free, pair_begin, pair_end;
@@ -105,7 +112,7 @@ private:
 	/// would be rounded by where it is computed, that is by the number of threads.
 	__attribute__((flatten, noipa)) static bool run(const KernelData& data, const Work& work)
 	{
-		const Law law = narrowed(data);
+		const Law law = law_of(data);
 		const RowDifference difference(data);
 		bool beyond = false;
 		std::uint32_t at = work.pair_begin;
@@ -283,52 +290,11 @@ private:
 	}
 };
 
-template <class P>
-laws::HertzHistory<P> narrow(const laws::HertzHistory<Real>& l)
-{
-	return { P(l.k_n), P(l.k_t), P(l.gamma_n), P(l.gamma_t), P(l.mu) };
-}
-template <class P>
-laws::HertzRestitution<P> narrow(const laws::HertzRestitution<Real>& l)
-{
-	return { P(l.effective_young), P(l.tangential_ratio), P(l.damping_fraction), P(l.mu) };
-}
-template <class P>
-laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l)
-{
-	return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) };
-}
-
-template <class P>
-laws::CundallStrack<P> narrow(const laws::CundallStrack<Real>& l)
-{
-	return { P(l.young), P(l.tangential_ratio), P(l.mu) };
-}
-template <class P>
-laws::HertzMindlin<P> narrow(const laws::HertzMindlin<Real>& l)
-{
-	return { P(l.effective_young), P(l.effective_shear), P(l.normal_dashpot), P(l.tangential_dashpot), P(l.mu) };
-}
-
 template <template <class> class Law, class P, bool Friction>
 Kernel kernel_of()
 {
 	using B = Body<Law<P>, P, Friction>;
 	return { &B::pairs, &B::sweep, compiled_for, B::S::width };
-}
-
-template <class Law, class P, bool Friction>
-Law Body<Law, P, Friction>::narrowed(const KernelData& data)
-{
-	return std::visit(
-		[](const auto& stored) -> Law {
-			const auto candidate = narrow<P>(stored);
-			if constexpr (std::is_same_v<std::decay_t<decltype(candidate)>, Law>)
-				return candidate;
-			else
-				return Law{};
-		},
-		*data.law);
 }
 
 template <template <class> class Law>
@@ -339,22 +305,15 @@ Kernel kernel_of(const KernelChoice& choice)
 	return choice.friction ? kernel_of<Law, double, true>() : kernel_of<Law, double, false>();
 }
 
-/// One set of kernels, for the instructions this file is compiled for.
-Kernel kernel_compiled_here(const KernelChoice& choice)
+template <template <class> class... Law>
+Kernel kernel_of(laws::LawList<Law...>, const KernelChoice& choice)
 {
-	switch (choice.law) {
-	case 0:
-		return kernel_of<laws::HertzHistory>(choice);
-	case 1:
-		return kernel_of<laws::HertzRestitution>(choice);
-	case 2:
-		return kernel_of<laws::SpringDashpot>(choice);
-	case 3:
-		return kernel_of<laws::CundallStrack>(choice);
-	default:
-		return kernel_of<laws::HertzMindlin>(choice);
-	}
+	constexpr Kernel (*of_law[])(const KernelChoice&) = { &kernel_of<Law>... };
+	return of_law[choice.law](choice);
 }
+
+/// One set of kernels, for the instructions this file is compiled for.
+Kernel kernel_compiled_here(const KernelChoice& choice) { return kernel_of(laws::Laws{}, choice); }
 
 }  // namespace
 }  // namespace graindrive::loop

@@ -16,6 +16,8 @@ const ContactLaw all_laws[] = { hertz(0.3, 500), laws::hertz_restitution(2e5, 0.
 	laws::spring_dashpot(1e5, 3e4, 0.8, 0.5), laws::CundallStrack<Real>{ 1e5, 0.3, 0.4 },
 	laws::HertzMindlin<Real>{ 2e5, 1e5, 0.1, 0.1, 0.4 } };
 
+static_assert(std::size(all_laws) == laws::Laws::size, "every law of the registry stands here once");
+
 /// A settling crowd, periodic in x, above a row of frozen disks, with a free clump of two.
 Scene settling(const ContactLaw& law, Precision precision, bool friction)
 {

@@ -1,6 +1,8 @@
 /// Lays pairs out in memory: first each thread's own, swept in order, then those that must be computed before anything moves.
 #include "engines/loop/pair_list.hpp"
 
+#include "engines/loop/pair_geometry.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -61,10 +63,8 @@ void PairList::place_pairs(const GrainRow* rows, std::uint32_t n_free, int threa
 		const Candidate& pair = candidates[candidate];
 		const GrainRow &a = rows[pair.first], &b = rows[pair.second];
 		links[next] = { pair.first * row_bytes, pair.second * row_bytes };
-		put(effective_radii, next, a.radius * b.radius / (a.radius + b.radius));
-		const double inverse_mass = a.inverse_mass + b.inverse_mass;
-		put(effective_masses, next,
-			inverse_mass > 0 ? 1 / inverse_mass : 0);  // two infinite masses: neither answers, so nothing is damped
+		put(effective_radii, next, effective_radius(a, b));
+		put(effective_masses, next, effective_mass(a, b));
 		put(slips, next, pair.slip);
 		place[candidate] = next++;
 	};

@@ -58,7 +58,8 @@ template <class Visitor, class AState>
 void visit_state(Visitor&& visit, AState& s)
 {
 	auto& scene = s.scene;
-	visit(scene.grains), visit(scene.bodies), visit(scene.walls), visit(scene.box), visit(scene.law);
+	visit(scene.grains), visit(scene.bodies), visit(scene.walls), visit(scene.box);
+	visit_law(visit, scene.law);
 	visit(scene.friction), visit(scene.rotation), visit(scene.gravity_x), visit(scene.gravity_y), visit(scene.damping),
 		visit(scene.damps_gravity), visit(scene.dt), visit(scene.precision), visit(scene.spin_response), visit(scene.skin),
 		visit(scene.target_area_fraction);

@@ -26,7 +26,10 @@ void Stepper::set_up_kernels()
 	data.gravity_x = state.scene.gravity_x;
 	data.gravity_y = state.scene.gravity_y;
 	data.spin_response = state.scene.rotation ? state.scene.spin_response : 0;
-	data.law = &state.scene.law;
+	law_in_float = laws::converted<float>(state.scene.law);
+	const auto address = [](const auto& law) -> const void* { return &law; };
+	data.law =
+		state.scene.precision == Precision::single ? std::visit(address, law_in_float) : std::visit(address, state.scene.law);
 	data.damping = state.scene.damping;
 	data.damps_gravity = state.scene.damps_gravity;
 	if (state.scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = state.scene.box.x_high - state.scene.box.x_low);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engines/loop/energy_ledger.hpp"
+#include "engines/loop/pair_geometry.hpp"
 #include "engines/loop/pair_list.hpp"
 #include "engines/loop/state.hpp"
 #include "engines/loop/thread_team.hpp"
@@ -139,6 +140,7 @@ private:
 	// What follows from it.
 	Kernel kernel;
 	KernelData data{};
+	laws::Laws::Any<float> law_in_float;  // of single precision
 	std::unique_ptr<ThreadTeam> team;
 	std::vector<std::uint32_t> row_of;  // index in Scene::grains -> place in memory
 	std::uint32_t n_free = 0, n_grains = 0;
@@ -227,21 +229,18 @@ private:
 		std::vector<MetContact> met;
 	};
 	std::unique_ptr<Books> books;  // of the energy ledger
-	struct Motion {
-		double vx, vy, surface_speed;
-	};
 	void remember_for_books();
-	Motion motion_after(std::uint32_t row) const;
+	SurfaceMotion motion_after(std::uint32_t row) const;
+	template <class Other>
+	void meet(std::uint64_t key, const Placement& at, const GrainRow& row, const Other& other, const SurfaceMotion& after,
+		const SurfaceMotion& after_other, double slip);
 	void meet_pairs();
 	void meet_walls(LedgerMotion& motion);
 	void move_in_books(LedgerMotion& motion);
 	void book_energy();
 
-	struct WallMeeting {
-		double n_x, n_y;
-		laws::Kinematics<double, double> contact;
-	};
-	WallMeeting meeting(const WallTouch& touch) const;
+	Placement placement_of(const WallTouch& touch) const;
+	Plane force_of_wall(const WallTouch& touch) const;
 	void list_wall_touches();
 	void compute_wall_forces();
 	void add_wall_forces(std::size_t body);

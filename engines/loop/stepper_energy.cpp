@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "engines/loop/guards.hpp"
+#include "engines/loop/pair_geometry.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
@@ -13,10 +14,12 @@ namespace {
 /// on the sum of all forces: neither has entries that are exact.
 void require_explicable(const Scene& scene)
 {
-	if (std::visit([](const auto& law) { return law.remembers_force; }, scene.law))
-		throw std::invalid_argument(
-			"the energy ledger knows no exact entries for the laws cundallStrack and hertzMindlin; switch "
-			"trackEnergy off, or take hertzHistory, hertzRestitution or springDashpot");
+	const auto remembers_force = [](const auto& law) { return law.remembers_force; };
+	const auto remembers_length = [](const auto& law) { return !law.remembers_force; };
+	if (std::visit(remembers_force, scene.law))
+		throw std::invalid_argument("the energy ledger knows no exact entries for the laws " + laws::laws_that_remember_forces() +
+									"; switch trackEnergy off, or take " +
+									laws::listed(laws::names_where(remembers_length), " or "));
 	if (scene.damping > 0)
 		throw std::invalid_argument(
 			sentence("the energy ledger needs damping = 0, got ", scene.damping, "; switch trackEnergy off, or damping"));
@@ -46,14 +49,25 @@ void Stepper::remember_for_books()
 }
 
 /// Velocity and surface speed of a grain after the step, where it was at the step.
-Stepper::Motion Stepper::motion_after(std::uint32_t at) const
+SurfaceMotion Stepper::motion_after(std::uint32_t at) const
 {
 	const GrainRow &row = state.rows[at], &before = books->rows[at];
-	if (at < n_free) return { row.vx, row.vy, row.surface_speed };
+	if (at < n_free) return motion_of(row);
 	const Member& member = state.members[at - n_free];
 	const RigidBody &body = state.scene.bodies[member.body], &was = books->bodies[member.body];
 	const double arm_x = before.x - member.shift_x - was.x, arm_y = before.y - member.shift_y - was.y;
 	return { body.vx - body.spin * arm_y, body.vy + body.spin * arm_x, body.spin * row.radius };
+}
+
+/// A contact at a step: `before` is what the law was told, the rest of the velocities belong to the half step after it.
+template <class Other>
+void Stepper::meet(std::uint64_t key, const Placement& at, const GrainRow& row, const Other& other, const SurfaceMotion& after,
+	const SurfaceMotion& after_other, double slip)
+{
+	const auto before = kinematics(at, row, other, state.scene.dt);
+	const auto then = relative_motion(at.normal, after, after_other);
+	books->met.push_back({ key, before.overlap, before.effective_radius, before.effective_mass, before.normal_velocity,
+		then.normal, before.tangential_velocity, then.tangential, slip });
 }
 
 void Stepper::meet_pairs()
@@ -62,21 +76,11 @@ void Stepper::meet_pairs()
 		if (!pairs.place[c]) continue;
 		const std::uint32_t i = state.candidates[c].first, j = state.candidates[c].second;
 		const GrainRow &a = books->rows[i], &b = books->rows[j];
-		const Separation d = separation(a, b, state.scene.box);
-		const double r = std::hypot(d.x, d.y), overlap = a.radius + b.radius - r;
-		if (!(overlap > 0)) continue;
-		const double n_x = d.x / r, n_y = d.y / r, inverse_mass = a.inverse_mass + b.inverse_mass;
-		const Motion after_a = motion_after(i), after_b = motion_after(j);
-		const auto normal = [&](double dvx, double dvy) { return dvx * n_x + dvy * n_y; };
-		const auto tangential = [&](double dvx, double dvy) { return dvx * n_y - dvy * n_x; };
+		const Placement at = placement(a, b, state.scene.box);
+		if (!(at.overlap > 0)) continue;
 		const std::uint64_t one = std::min(state.index_of[i], state.index_of[j]),
 							other = std::max(state.index_of[i], state.index_of[j]);
-		books->met.push_back(
-			{ one << 32 | other, overlap, a.radius * b.radius / (a.radius + b.radius), inverse_mass > 0 ? 1 / inverse_mass : 0,
-				normal(b.vx - a.vx, b.vy - a.vy), normal(after_b.vx - after_a.vx, after_b.vy - after_a.vy),
-				a.surface_speed + b.surface_speed + tangential(b.vx - a.vx, b.vy - a.vy),
-				after_a.surface_speed + after_b.surface_speed + tangential(after_b.vx - after_a.vx, after_b.vy - after_a.vy),
-				books->slips[c] });
+		meet(one << 32 | other, at, a, b, motion_after(i), motion_after(j), books->slips[c]);
 	}
 }
 
@@ -86,18 +90,10 @@ void Stepper::meet_walls(LedgerMotion& motion)
 	for (const WallTouch& touch : state.wall_touches) {
 		if (!(touch.overlap > 0)) continue;
 		const Wall &was = books->walls[touch.wall], &is = state.scene.walls[touch.wall];
-		const double n_x = was.across_x() ? was.outward() : 0, n_y = was.across_x() ? 0 : was.outward();
 		const std::uint32_t at = row_of[touch.grain];
 		const GrainRow& row = books->rows[at];
-		const Motion after = motion_after(at);
-		const auto normal = [&](double dvx, double dvy) { return dvx * n_x + dvy * n_y; };
-		const auto tangential = [&](double dvx, double dvy) { return dvx * n_y - dvy * n_x; };
 		const std::uint64_t one = touch.grain, side = 0xffffffff - static_cast<int>(was.side);
-		books->met.push_back({ one << 32 | side, touch.overlap, row.radius, row.inverse_mass > 0 ? 1 / row.inverse_mass : 0,
-			normal(was.velocity_x() - row.vx, was.velocity_y() - row.vy),
-			normal(is.velocity_x() - after.vx, is.velocity_y() - after.vy),
-			row.surface_speed + tangential(was.velocity_x() - row.vx, was.velocity_y() - row.vy),
-			after.surface_speed + tangential(is.velocity_x() - after.vx, is.velocity_y() - after.vy), touch.slip_before });
+		meet(one << 32 | side, placement(row, was), row, was, motion_after(at), motion_of(is), touch.slip_before);
 	}
 	for (std::size_t w = 0; w < state.scene.walls.size(); ++w) {
 		const Wall &was = books->walls[w], &is = state.scene.walls[w];

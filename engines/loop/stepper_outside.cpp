@@ -2,27 +2,12 @@
 ///
 /// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "engines/loop/guards.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
-
-namespace {
-
-bool same(const ContactLaw& one, const ContactLaw& other)
-{
-	if (one.index() != other.index()) return false;
-	return std::visit(
-		[&](const auto& law) {
-			return std::memcmp(&law, &std::get<std::decay_t<decltype(law)>>(other), sizeof law) == 0;  // numbers alone
-		},
-		one);
-}
-
-}  // namespace
 
 /// One free grain after the sweep; `surface_force` is torque over radius [N].
 void Stepper::kick_grain(std::uint32_t at, double force_x, double force_y, double surface_force)
@@ -47,10 +32,10 @@ void Stepper::hand_outside_forces_over()
 	outside.assign(n_free, {});
 	for (const WallTouch& touch : state.wall_touches) {
 		if (!(touch.overlap > 0) || state.scene.grains[touch.grain].body != free_grain) continue;
-		const WallMeeting m = meeting(touch);
+		const laws::Planar<double> by_wall = force_of_wall(touch);
 		OutsideForce& force = outside[row_of[touch.grain]];
-		force.x += -touch.normal * m.n_x - touch.friction * m.n_y;
-		force.y += touch.friction * m.n_x - touch.normal * m.n_y;
+		force.x += by_wall.x;
+		force.y += by_wall.y;
 		force.turning += touch.friction;
 	}
 	for (const Push& push : state.pushes) {

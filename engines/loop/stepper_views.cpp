@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engines/loop/pair_geometry.hpp"
 #include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
@@ -156,8 +157,7 @@ double Stepper::overlap_at_forces(std::uint32_t candidate) const
 	const Candidate& pair = state.candidates[candidate];
 	const double moved = moved_since_forces(candidate);
 	const GrainRow a = row_before(moved, pair.first), b = row_before(moved, pair.second);
-	const Separation d = separation(a, b, state.scene.box);
-	return a.radius + b.radius - std::hypot(d.x, d.y);
+	return placement(a, b, state.scene.box).overlap;
 }
 
 void Stepper::touches_on(std::size_t b, std::vector<Touch>& touches) const

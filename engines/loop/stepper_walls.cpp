@@ -83,9 +83,10 @@ void check_walls(const Scene& scene)
 			wall_length(scene, wall));
 	}
 	if (scene.walls.empty()) return;
-	require(!std::visit([](const auto& law) { return law.acts_at_contact_point; }, scene.law), scene.walls[0],
-		"the laws cundallStrack and hertzMindlin are for pairs of disks; take frozen disks, or another law; walls",
-		scene.walls.size());
+	const auto acts_at_contact_point = [](const auto& law) { return law.acts_at_contact_point; };
+	const std::string for_pairs_only = "the laws " + laws::listed(laws::names_where(acts_at_contact_point), " and ") +
+	                                   " are for pairs of disks; take frozen disks, or another law; walls";
+	require(!std::visit(acts_at_contact_point, scene.law), scene.walls[0], for_pairs_only.c_str(), scene.walls.size());
 	const double critical = critical_step_at_walls(scene);
 	if (scene.dt > critical) {
 		std::ostringstream message;
@@ -153,8 +154,7 @@ void Stepper::list_wall_touches()
 			while (known != state.wall_touches.end() && (known->wall < w || (known->wall == w && known->grain < g))) ++known;
 			if (state.scene.grains[g].body != free_grain && state.body_fixed[state.scene.grains[g].body]) continue;
 			const GrainRow& row = state.rows[row_of[g]];
-			const double depth = row.radius + wall.outward() * ((wall.across_x() ? row.x : row.y) - wall.position);
-			if (depth < -reach) continue;
+			if (placement(row, wall).overlap < -reach) continue;
 			const bool seen = known != state.wall_touches.end() && known->wall == w && known->grain == g;
 			listed.push_back({ w, g, seen ? known->slip : 0 });
 		}
@@ -163,41 +163,36 @@ void Stepper::list_wall_touches()
 	state.moved_near_walls = 0;
 }
 
-Stepper::WallMeeting Stepper::meeting(const WallTouch& touch) const
+Placement Stepper::placement_of(const WallTouch& touch) const
 {
-	const Wall& wall = state.scene.walls[touch.wall];
-	const GrainRow& row = state.rows[row_of[touch.grain]];
-	WallMeeting m;
-	m.n_x = wall.across_x() ? wall.outward() : 0;
-	m.n_y = wall.across_x() ? 0 : wall.outward();
-	const double dvx = wall.velocity_x() - row.vx, dvy = wall.velocity_y() - row.vy;
-	m.contact.overlap = row.radius + wall.outward() * ((wall.across_x() ? row.x : row.y) - wall.position);
-	m.contact.normal_velocity = dvx * m.n_x + dvy * m.n_y;
-	m.contact.tangential_velocity = row.surface_speed + (dvx * m.n_y - dvy * m.n_x);
-	m.contact.effective_radius = row.radius;
-	m.contact.effective_mass = row.inverse_mass > 0 ? 1 / row.inverse_mass : 0;
-	m.contact.dt = data.dt;
-	return m;
+	return placement(state.rows[row_of[touch.grain]], state.scene.walls[touch.wall]);
+}
+
+/// On the grain [N].
+Plane Stepper::force_of_wall(const WallTouch& touch) const
+{
+	return laws::force_on_first(placement_of(touch).normal, touch.normal, touch.friction);
 }
 
 void Stepper::compute_wall_forces()
 {
 	for (Wall& wall : state.scene.walls) wall.force_x = wall.force_y = 0;
 	for (WallTouch& touch : state.wall_touches) {
-		const WallMeeting m = meeting(touch);
-		touch.overlap = m.contact.overlap;
+		Wall& wall = state.scene.walls[touch.wall];
+		const auto contact = kinematics(placement_of(touch), state.rows[row_of[touch.grain]], wall, data.dt);
+		touch.overlap = contact.overlap;
 		touch.normal = touch.friction = 0;
 		touch.slip_before = touch.slip;
-		if (!(m.contact.overlap > 0)) {
+		if (!(contact.overlap > 0)) {
 			touch.slip = 0;
 			continue;
 		}
-		const auto response = std::visit([&](const auto& law) { return law(m.contact, touch.slip); }, state.scene.law);
+		const auto response = std::visit([&](const auto& law) { return law(contact, touch.slip); }, state.scene.law);
 		touch.normal = response.normal;
 		if (state.scene.friction) touch.friction = response.tangential, touch.slip = response.slip;
-		Wall& wall = state.scene.walls[touch.wall];
-		wall.force_x += touch.normal * m.n_x + touch.friction * m.n_y;
-		wall.force_y += touch.normal * m.n_y - touch.friction * m.n_x;
+		const Plane force = force_of_wall(touch);
+		wall.force_x -= force.x;
+		wall.force_y -= force.y;
 	}
 }
 
@@ -207,8 +202,7 @@ void Stepper::add_wall_forces(std::size_t b)
 	RigidBody& body = state.scene.bodies[b];
 	for (const WallTouch& touch : state.wall_touches) {
 		if (state.scene.grains[touch.grain].body != static_cast<int>(b) || !(touch.overlap > 0)) continue;
-		const WallMeeting m = meeting(touch);
-		const double x = -touch.normal * m.n_x - touch.friction * m.n_y, y = touch.friction * m.n_x - touch.normal * m.n_y;
+		const auto [x, y] = force_of_wall(touch);
 		const std::uint32_t at = row_of[touch.grain];
 		const GrainRow& row = state.rows[at];
 		const Member& member = state.members[at - n_free];
@@ -225,10 +219,8 @@ void Stepper::move_walls()
 	for (const WallTouch& touch : state.wall_touches) {
 		if (data.outside) break;
 		if (!(touch.overlap > 0) || state.scene.grains[touch.grain].body != free_grain) continue;
-		const Wall& wall = state.scene.walls[touch.wall];
-		const double n_x = wall.across_x() ? wall.outward() : 0, n_y = wall.across_x() ? 0 : wall.outward();
-		kick_grain(row_of[touch.grain], -touch.normal * n_x - touch.friction * n_y, touch.friction * n_x - touch.normal * n_y,
-			touch.friction);
+		const Plane force = force_of_wall(touch);
+		kick_grain(row_of[touch.grain], force.x, force.y, touch.friction);
 	}
 	double fastest_wall = 0;
 	for (Wall& wall : state.scene.walls) {
@@ -253,7 +245,7 @@ void Stepper::check_walls_while_running() const
 		const GrainRow& row = state.rows[row_of[touch.grain]];
 		const int owner = state.scene.grains[touch.grain].body;
 		const bool led = owner != free_grain && !state.scene.bodies[owner].responds_x && !state.scene.bodies[owner].responds_y;
-		const double overlap = meeting(touch).contact.overlap;
+		const double overlap = placement_of(touch).overlap;
 		if (led || !(overlap > state.guards.largest_overlap * row.radius)) continue;
 		std::ostringstream message;
 		message << now() << introduce(row_of[touch.grain]) << " overlaps wall " << name_of(state.scene.walls[touch.wall].side)
@@ -269,11 +261,10 @@ std::vector<Contact> Stepper::wall_contacts() const
 	const double bound = slipping_bound();
 	for (const WallTouch& touch : state.wall_touches) {
 		if (!(touch.overlap > 0)) continue;
-		const WallMeeting m = meeting(touch);
+		const Plane n = placement_of(touch).normal;
 		const GrainRow row = row_before(body_forces_known ? 0 : drifted, row_of[touch.grain]);
-		found.push_back(
-			{ touch.grain, touch.wall, m.n_x, m.n_y, row.x + row.radius * m.n_x, row.y + row.radius * m.n_y, touch.normal,
-				touch.friction, touch.overlap, touch.slip, std::abs(touch.friction) >= bound * std::abs(touch.normal) });
+		found.push_back({ touch.grain, touch.wall, n.x, n.y, row.x + row.radius * n.x, row.y + row.radius * n.y, touch.normal,
+			touch.friction, touch.overlap, touch.slip, std::abs(touch.friction) >= bound * std::abs(touch.normal) });
 	}
 	return found;
 }

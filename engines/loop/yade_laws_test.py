@@ -522,8 +522,8 @@ def test_settings_out_of_range_are_refused():
     for settings, words in (
         (dict(damping=1.0), "damping must lie in .0, 1., got 1"),
         (dict(damping=-0.1), "damping must lie in .0, 1., got -0.1"),
-        (dict(normalDampingRatio=-1), "normal damping ratio must not be negative, got -1"),
-        (dict(law="cundallStrack", poisson=-0.2), "k_t/k_n, must not be negative, got -0.2"),
+        (dict(normalDampingRatio=-1), "GrainLoop.normalDampingRatio must not be negative, got -1"),
+        (dict(law="cundallStrack", poisson=-0.2), "GrainLoop.poisson must not be negative, got -0.2"),
         (dict(law="mindlin"), "'cundallStrack' or 'hertzMindlin', got mindlin"),
     ):
         with pytest.raises(ValueError, match=words):

@@ -182,7 +182,7 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 			owner = map.body_of_id[id] = new_body(int(id), rigid(state));
 			if (is_frozen(state)) mass = HUGE_VAL;
 		}
-		if (owner != free_grain && std::holds_alternative<laws::HertzMindlin<Real>>(scene.law))
+		if (owner != free_grain && std::visit([](const auto& law) { return law.weighs_members_alone; }, scene.law))
 			mass = state.blockedDOFs == State::DOF_ALL ? HUGE_VAL : state.mass;  // as YADE's law sees it
 		map.grain_of_id[id] = int(scene.grains.size());
 		map.grain_id.push_back(int(id));

@@ -100,7 +100,7 @@ def test_a_class_of_the_users_own_may_have_attributes_of_its_own():
         (engines.FieldAverager, {"every": 0}, "every"),
         (engines.GrainLoop, {"threads": 0}, "threads must lie in 1..256, got 0"),
         (engines.Law2_ScGeom_ContactPhys_HertzHistory, {"normalStiffness": 0}, "normalStiffness must be positive"),
-        (engines.Law2_ScGeom_ContactPhys_HertzRestitution, {"poisson": 0.6}, "Poisson"),
+        (engines.Law2_ScGeom_ContactPhys_HertzRestitution, {"poisson": 0.6}, "poisson must lie in"),
         (engines.Law2_ScGeom_ContactPhys_SpringDashpot, {"restitution": 1.5}, "restitution must lie in"),
     ],
 )

@@ -72,7 +72,7 @@ def test_keywords_only(cls):
             {"leverArm": "half"},
             "leverArm must be 'radius' or 'contactPoint'",
         ),
-        (engines.Law2_ScGeom_ContactPhys_HertzRestitution, {"poisson": 0.6}, "Poisson's ratio must lie in"),
+        (engines.Law2_ScGeom_ContactPhys_HertzRestitution, {"poisson": 0.6}, "poisson must lie in"),
         (
             engines.Law2_ScGeom_ContactPhys_SpringDashpot,
             {"restitution": 1.5},

@@ -2,22 +2,11 @@
 
 import math
 
+from . import engines
 from .errors import UsageError
 
-OUR_LAWS = {
-    "Law2_ScGeom_ContactPhys_HertzHistory": "hertzHistory",
-    "Law2_ScGeom_ContactPhys_HertzRestitution": "hertzRestitution",
-    "Law2_ScGeom_ContactPhys_SpringDashpot": "springDashpot",
-}
-OUR_ATTRIBUTES = (
-    "normalStiffness",
-    "tangentialStiffness",
-    "normalDamping",
-    "tangentialDamping",
-    "young",
-    "poisson",
-    "restitution",
-)
+OUR_LAWS = engines.law_functors()  # Law2_ -> GrainLoop.law
+OUR_ATTRIBUTES = tuple(dict.fromkeys(key for law in OUR_LAWS.values() for key in engines.contact_laws()[law]))
 OUR_IP2 = "Ip2_FrictMat_FrictMat_ContactPhys"
 # Law2_ -> its Ip2_, GrainLoop.law, and what must stay as it is by default because GrainLoop does not have it
 YADE_LAWS = {

@@ -128,12 +128,7 @@ def yade_loop(material, gravity, between=(), damping=0.0):
     from yade import O
     from yade import wrapper as w
 
-    law = engines.Law2_ScGeom_ContactPhys_HertzHistory(
-        normalStiffness=material.normal_stiffness,
-        tangentialStiffness=material.tangential_stiffness,
-        normalDamping=material.normal_damping,
-        tangentialDamping=material.tangential_damping,
-    )
+    law = engines.Law2_ScGeom_ContactPhys_HertzHistory(**material.given())
     phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=material.friction)
     O.engines = [
         w.ForceResetter(),

@@ -10,11 +10,6 @@ import numpy as np
 from .. import engines
 from .scenes import DRIVEN, FREE, WALL
 
-LAW_CONSTANTS = {
-    "hertzHistory": ("normalStiffness", "tangentialStiffness", "normalDamping", "tangentialDamping"),
-    "hertzRestitution": ("young", "poisson", "restitution"),
-    "springDashpot": ("normalStiffness", "tangentialStiffness", "restitution"),
-}
 DRUM_MASS = 1e9  # wall and intruder of a drum are as good as infinitely heavy
 
 
@@ -51,7 +46,7 @@ def bodies(a_scene):
 
 def law_settings(a_scene):
     """Return the law's constants under YADE's names."""
-    return dict(zip(LAW_CONSTANTS[str(a_scene["law"])], map(float, a_scene["constants"])))
+    return dict(zip(engines.contact_laws()[str(a_scene["law"])], map(float, a_scene["constants"])))
 
 
 def grain_loop(a_scene, **settings):
@@ -74,8 +69,8 @@ def yade_loop(a_scene):
     """Put YADE's own loop with the same law into O.engines."""
     from yade import O, wrapper
 
-    name = {"hertzHistory": "HertzHistory", "springDashpot": "SpringDashpot"}[str(a_scene["law"])]
-    law = getattr(engines, f"Law2_ScGeom_ContactPhys_{name}")(**law_settings(a_scene))
+    functor = {law: name for name, law in engines.law_functors().items()}[str(a_scene["law"])]
+    law = getattr(engines, functor)(**law_settings(a_scene))
     phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=float(a_scene["friction"]))
     skin = 0.1 * 2 * float(np.median(a_scene["r"]))
     O.engines = [
