@@ -44,7 +44,9 @@ SphereScene read_scene(const char* path)
 			Sphere one;
 			in >> one.held >> one.x[0] >> one.x[1] >> one.x[2] >> one.radius >> one.mass >> one.v[0] >> one.v[1] >> one.v[2] >>
 				one.spin[0] >> one.spin[1] >> one.spin[2];
-			if (in) s.spheres.push_back(one);
+			if (!in) continue;
+			if (one.held) one.mass = HUGE_VAL;  // as frozen atoms of the peers: a contact counts with the other's mass
+			s.spheres.push_back(one);
 		}
 	}
 	return s;
@@ -56,7 +58,7 @@ void write_spheres(const SphereLoop& loop, const char* path)
 	for (std::size_t i = 0; i < loop.size(); ++i) {
 		const Sphere s = loop.sphere(i);
 		std::fprintf(file, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", s.held, s.x[0], s.x[1],
-			s.x[2], s.radius, s.mass, s.v[0], s.v[1], s.v[2], s.spin[0], s.spin[1], s.spin[2]);
+			s.x[2], s.radius, s.held ? 1.0 : s.mass, s.v[0], s.v[1], s.v[2], s.spin[0], s.spin[1], s.spin[2]);
 	}
 	std::fclose(file);
 }
