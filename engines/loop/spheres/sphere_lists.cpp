@@ -102,8 +102,8 @@ void SphereLoop::begin_search()
 	std::vector<std::uint32_t> new_row(s.n);
 	for (std::uint32_t at = 0; at < s.n; ++at) new_row[at < s.n_free ? order[at] : at] = at;
 	keep_pairs(new_row);
-	AlignedVector<SphereRow> rows(s.rows);
-	AlignedVector<double> inverse_masses(s.inverse_masses);
+	StreamedVector<SphereRow> rows(s.rows);
+	StreamedVector<double> inverse_masses(s.inverse_masses);
 	std::vector<std::uint32_t> index_of(s.index_of);
 	for (std::uint32_t at = 0; at < s.n_free; ++at) {
 		rows[at] = s.rows[order[at]];

@@ -11,20 +11,22 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr std::uint32_t group_size = PairGroup<double>::size;
-constexpr std::uint32_t groups_read_ahead = 16;  // the kernels prefetch rows of links so far behind the last
-
-std::uint32_t padded(std::uint32_t places) { return (places + group_size - 1) / group_size * group_size; }
+constexpr std::uint32_t groups_read_ahead = 24;  // the kernels prefetch rows of links so far behind the last
 
 }  // namespace
 
 void* Buffer::with_room_for(std::size_t bytes)
 {
-	if (bytes > size) {
-		size = bytes + bytes / 4;
-		memory.reset(::operator new(size, std::align_val_t(64)));
-	}
-	return memory.get();
+	if (bytes <= size) return memory;
+	release();
+	size = bytes + bytes / 4;
+	return memory = in_big_pages(size);
+}
+
+void Buffer::release()
+{
+	if (memory) free_big_pages(memory, size);
+	memory = nullptr;
 }
 
 const KeptPair* KeptPairs::of(std::uint32_t owner, std::uint32_t partner) const
@@ -37,6 +39,7 @@ const KeptPair* KeptPairs::of(std::uint32_t owner, std::uint32_t partner) const
 /// Writes pairs one behind the other.
 template <class P>
 struct SpherePairs::Layer {
+	static constexpr std::uint32_t group_size = PairGroup<P>::size;
 	const Source& source;
 	PairGroup<P>* groups;
 	const PairGroup<P>* old;
@@ -88,7 +91,7 @@ struct SpherePairs::Layer {
 	/// Fills up to a whole group with pairs that never touch.
 	void pad()
 	{
-		for (const std::uint32_t end = padded(next); next < end;) put(source.dummy, false, 0, 0, 0, 0, 0);
+		while (next % group_size) put(source.dummy, false, 0, 0, 0, 0, 0);
 	}
 };
 
@@ -101,6 +104,7 @@ PairCounts3 SpherePairs::select(const Source& source)
 template <class P>
 PairCounts3 SpherePairs::select_in(const Source& source)
 {
+	constexpr std::uint32_t group_size = PairGroup<P>::size;
 	const SphereState& s = source.state;
 	const std::uint32_t first_row = source.block_begin * grains_per_block,
 						range_end = std::min(source.block_end * grains_per_block, s.n_free);
@@ -178,6 +182,7 @@ PairCounts3 SpherePairs::select_in(const Source& source)
 KeptPair SpherePairs::pair_at(std::uint32_t at) const
 {
 	const auto read = [&](const auto* groups) {
+		constexpr std::uint32_t group_size = std::decay_t<decltype(*groups)>::size;
 		const auto& g = groups[at / group_size];
 		const std::uint32_t k = at % group_size;
 		return KeptPair{ 0, { g.spring[0][k], g.spring[1][k], g.spring[2][k] }, g.stiffness[k], g.damping[k] };

@@ -11,16 +11,18 @@ namespace graindrive::loop {
 /// Memory that only grows and is not initialised.
 class Buffer {
 public:
+	Buffer() = default;
+	Buffer(const Buffer&) = delete;
+	~Buffer() { release(); }
 	void* with_room_for(std::size_t bytes);
-	void* data() const { return memory.get(); }
-	void swap(Buffer& other) { memory.swap(other.memory), std::swap(size, other.size); }
+	void* data() const { return memory; }
+	void swap(Buffer& other) { std::swap(memory, other.memory), std::swap(size, other.size); }
 
 private:
-	struct Free {
-		void operator()(void* p) const { ::operator delete(p, std::align_val_t(64)); }
-	};
-	std::unique_ptr<void, Free> memory;
+	void* memory = nullptr;
 	std::size_t size = 0;
+
+	void release();
 };
 
 /// A spring on its way to new rows, with the law's constants of its pair.

@@ -1,4 +1,4 @@
-/// What the loop over spheres keeps in memory: one row of two cache lines a sphere, and groups of sixteen pairs.
+/// What the loop over spheres keeps in memory: one row of two cache lines a sphere, and groups of eight pairs (sixteen in single precision).
 ///
 /// A contact needs differences of positions and velocities and sums of radii and surface speeds: a kernel adds or subtracts whole rows
 /// and transposes. Forces are added to the rows of both spheres, in the order of (owner, partner).
@@ -27,10 +27,11 @@ struct RowLayout<SphereRow> {
 	static constexpr int sign[12] = { -1, -1, -1, 1, -1, -1, -1, 1, 1, 1, 1, 1 };
 };
 
-/// Sixteen pairs, number by number: as many as the widest pack. All that a step reads and writes of them lies together.
+/// A few pairs, number by number, as many as the widest pack holds: each number fills a cache line, and lines follow each other in the order
+/// in which a step reads them.
 template <class P>
 struct alignas(64) PairGroup {
-	static constexpr int size = 16;
+	static constexpr std::uint32_t size = 64 / sizeof(P);
 	PairLink links[size];
 	P spring[3][size];  ///< tangential spring of the owner's surface against the partner's [m]
 	P stiffness[size];  ///< the law's constants of the pair, see sphere_terms.hpp

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engines/loop/spheres/big_pages.hpp"
 #include "engines/loop/spheres/sphere_row.hpp"
 #include "engines/loop/spheres/sphere_search.hpp"
 
@@ -15,9 +16,9 @@ struct ListedPair {
 };
 
 struct SphereState {
-	AlignedVector<SphereRow> rows;         ///< free spheres by cell, then held ones, then dummies that fill up packs
-	AlignedVector<double> inverse_masses;  ///< by row [1/kg]; 0 for held spheres and dummies
-	std::vector<std::uint32_t> index_of;   ///< row -> index in SphereScene::spheres
+	StreamedVector<SphereRow> rows;         ///< free spheres by cell, then held ones, then dummies that fill up packs
+	StreamedVector<double> inverse_masses;  ///< by row [1/kg]; 0 for held spheres and dummies
+	std::vector<std::uint32_t> index_of;    ///< row -> index in SphereScene::spheres
 	std::uint32_t n_free = 0, n = 0;
 	std::vector<double> searched_at;             ///< places at the last search [m]
 	double skin = 0;                             ///< of the last search [m]
