@@ -8,7 +8,7 @@
 
 namespace graindrive::loop {
 
-/// Forces of a contact where the spheres are now.
+/// A pair that carries a tangential spring.
 struct SphereContact {
 	std::uint32_t first, second;  ///< indices in SphereScene::spheres
 	Vector3r spring;              ///< of first's surface against second's [m]

@@ -167,7 +167,6 @@ PairCounts3 SpherePairs::select_in(const Source& source)
 	view.early_end = layer.next;
 	for (std::uint32_t k = 0; k < groups_read_ahead; ++k)
 		std::fill_n(layer.groups[layer.next / group_size + k].links, group_size, source.dummy);
-	used_bytes = layer.next / group_size * sizeof(PairGroup<P>);
 	early_forces.resize(view.early_end - view.early_begin);
 	view.block_begin = source.block_begin, view.block_end = source.block_end;
 	view.groups = layer.groups;

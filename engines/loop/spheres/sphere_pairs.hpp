@@ -2,7 +2,7 @@
 ///
 /// A pair's place decides nothing but memory: forces are added to every row in the order of (owner, partner), on any number of threads.
 #pragma once
-#include <memory>
+#include <cmath>
 
 #include "engines/loop/spheres/sphere_state.hpp"
 
@@ -65,13 +65,10 @@ public:
 
 	SphereShare view;                   ///< what the kernels see
 	std::vector<PairLink> early_links;  ///< byte offsets of the early pairs' rows
-	std::size_t bytes() const { return used_bytes; }
-	void* groups() const { return memory.data(); }
 
 private:
 	Precision precision = Precision::double_;
 	Buffer memory, old_memory;
-	std::size_t used_bytes = 0;
 	std::vector<std::uint8_t> wrapped;
 	std::vector<std::uint32_t> block_pair_end, block_early_end;
 	std::vector<std::uint32_t> early;  // candidates
