@@ -23,17 +23,6 @@ bool runs(Processor processor)
 	}
 }
 
-Processor wanted_processor()
-{
-	const std::vector<Processor> supported = processors_supported();
-	const char* asked = std::getenv("GRAINDRIVE_PROCESSOR");
-	if (!asked || !*asked) return supported.front();
-	for (Processor processor : supported)
-		if (asked == name_of(processor)) return processor;
-	throw std::invalid_argument("GRAINDRIVE_PROCESSOR must be avx512, avx2 or portable and supported by this processor, got '" +
-								std::string(asked) + "'; unset it for the best");
-}
-
 }  // namespace
 
 std::string name_of(Processor processor)
@@ -47,6 +36,17 @@ std::vector<Processor> processors_supported()
 	for (Processor processor : { Processor::avx512, Processor::avx2, Processor::portable })
 		if (runs(processor)) supported.push_back(processor);
 	return supported;
+}
+
+Processor wanted_processor()
+{
+	const std::vector<Processor> supported = processors_supported();
+	const char* asked = std::getenv("GRAINDRIVE_PROCESSOR");
+	if (!asked || !*asked) return supported.front();
+	for (Processor processor : supported)
+		if (asked == name_of(processor)) return processor;
+	throw std::invalid_argument("GRAINDRIVE_PROCESSOR must be avx512, avx2 or portable and supported by this processor, got '" +
+								std::string(asked) + "'; unset it for the best");
 }
 
 Kernel choose_kernel(const KernelChoice& choice)

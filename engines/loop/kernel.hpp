@@ -87,6 +87,9 @@ Kernel kernel_portable(const KernelChoice&);
 std::string name_of(Processor);                 ///< as in GRAINDRIVE_PROCESSOR
 std::vector<Processor> processors_supported();  ///< those whose kernels run here, the best first
 
+/// The best processor whose kernels run here, or the one that GRAINDRIVE_PROCESSOR asks for. @throws as choose_kernel
+Processor wanted_processor();
+
 /// The best kernel this processor can run. The environment variable GRAINDRIVE_PROCESSOR (avx512, avx2, portable) asks for less.
 /// @throws std::invalid_argument for an unknown name or one that this processor cannot run
 Kernel choose_kernel(const KernelChoice&);

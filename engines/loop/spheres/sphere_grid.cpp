@@ -1,0 +1,82 @@
+/// Lays the grid and sorts spheres into it (counting sort: stable, linear).
+#include "engines/loop/spheres/sphere_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr int cells_needed_when_periodic = 3;  // fewer, and a pair would be met through two of its images
+constexpr int cells_across_tile = 16;          // a slab of rows: 16 x 16 cells, some 50 kB
+
+GridAxis make_axis(double low, double high, bool periodic, double reach, char name)
+{
+	GridAxis a;
+	a.low = low;
+	a.length = high - low;
+	a.periodic = periodic;
+	a.cells = std::max(1, static_cast<int>(std::min(a.length / reach, 1e6)));
+	if (periodic && a.cells < cells_needed_when_periodic) {
+		std::ostringstream message;
+		message << "a periodic box must be at least " << cells_needed_when_periodic * reach << " m long in " << name
+				<< " (three of the largest free spheres, with skin), got " << a.length << " m; lengthen it";
+		throw std::invalid_argument(message.str());
+	}
+	a.per_length = a.length > 0 ? a.cells / a.length : 0;
+	return a;
+}
+
+int tile_size(int cells)
+{
+	const int tiles = (cells + cells_across_tile - 1) / cells_across_tile;
+	return (cells + tiles - 1) / tiles;
+}
+
+}  // namespace
+
+CellPlace SphereGrid::place(std::uint32_t cell) const
+{
+	const int f = cell % tile_f, m = cell / tile_f % tile_m, s = cell / (tile_f * tile_m) % along[0].cells;
+	const int tile = cell / (tile_f * tile_m * along[0].cells);
+	return { s, tile / tiles_f() * tile_m + m, tile % tiles_f() * tile_f + f };
+}
+
+void SphereGrid::lay(const SphereRow* rows, std::uint32_t n_free, const SphereBox& box, double reach)
+{
+	double low[3], high[3];
+	for (int k = 0; k < 3; ++k) {
+		low[k] = box.low[k], high[k] = box.high[k];
+		if (box.periodic[k]) continue;
+		low[k] = high[k] = n_free ? rows[0].x[k] : 0;
+		for (std::uint32_t i = 0; i < n_free; ++i)
+			low[k] = std::min(low[k], rows[i].x[k]), high[k] = std::max(high[k], rows[i].x[k]);
+	}
+	std::stable_sort(axis, axis + 3, [&](int a, int b) { return high[a] - low[a] > high[b] - low[b]; });
+	double stretch = 1;  // a stray sphere must not cost memory
+	const double enough = 4.0 * n_free + 100;
+	for (int attempt = 0; attempt < 60; ++attempt, stretch *= 1.3) {
+		for (int q = 0; q < 3; ++q) {
+			const int k = axis[q];
+			along[q] = make_axis(low[k], high[k], box.periodic[k], reach * (box.periodic[k] ? 1 : stretch), "xyz"[k]);
+		}
+		if (double(along[0].cells) * along[1].cells * along[2].cells <= enough) break;
+	}
+	tile_m = tile_size(along[1].cells);
+	tile_f = tile_size(along[2].cells);
+}
+
+void SphereGrid::sort(const SphereRow* rows, std::uint32_t n_free, std::vector<std::uint32_t>& order)
+{
+	cell_of_row.resize(n_free);
+	order.resize(n_free);
+	start.assign(cells() + 2, 0);
+	for (std::uint32_t i = 0; i < n_free; ++i) ++start[(cell_of_row[i] = cell_of(rows[i].x)) + 2];
+	for (std::size_t c = 2; c < start.size(); ++c) start[c] += start[c - 1];
+	for (std::uint32_t i = 0; i < n_free; ++i) order[start[cell_of_row[i] + 1]++] = i;
+}
+
+}  // namespace graindrive::loop
