@@ -2,11 +2,11 @@
 ///
 ///   F_n = elastic - c_n v_n,   F_t = -(k_t s + c_t v_t), cut at mu |F_n|
 ///
-/// with the symbols of contact_laws.hpp. The constants take the roots and divisions of radii and masses out of the step.
+/// with the symbols of the laws. The constants take the roots and divisions of radii and masses out of the step.
 #pragma once
 #include <cmath>
 
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/registry.hpp"
 
 namespace graindrive::laws {
 

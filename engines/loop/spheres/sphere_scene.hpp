@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engines/base/real.hpp"
-#include "engines/laws/contact_laws.hpp"
+#include "engines/laws/registry.hpp"
 #include "engines/loop/kernel.hpp"
 
 namespace graindrive::loop {
