@@ -1,6 +1,7 @@
 """What LAMMPS and LIGGGHTS have in common: the data file, a run in a folder, and what its log says."""
 
 import re
+import resource
 import subprocess
 from pathlib import Path
 
@@ -13,7 +14,7 @@ fix weight free gravity {gravity} vector 0 -1 0
 fix plane all enforce2d
 compute slide free ke
 compute turn free erotate/sphere
-thermo {steps}
+thermo {thermo}
 thermo_style custom step c_slide c_turn
 thermo_modify lost error norm no format float %.15g
 run {steps}
@@ -45,20 +46,32 @@ def write_data(a_scene, folder, size_of):
 
 def run(command, a_scene, settings, steps, folder, name):
     """Run an input of `settings` and STEPS; return wall and processor time [s], and the last two energies, slide and turn."""
-    last = STEPS.format(dt=float(a_scene["dt"]), gravity=float(a_scene["gravity"]), steps=steps)
+    log, processor_time = run_once(command, a_scene, settings, steps, folder, name)
+    wall = float(re.search(r"Loop time of (\S+)", log)[1])
+    share = re.search(r"([\d.]+)% CPU use", log)
+    if share:
+        cpu = wall * float(share[1]) / 100
+    else:  # LIGGGHTS does not say: what a run of no steps takes is its set-up
+        cpu = processor_time - run_once(command, a_scene, settings, 0, folder, name)[1]
+    rows = [line.split() for line in log[: log.index("Loop time")].splitlines() if re.match(r"\s*\d+\s", line)]
+    _, slide, turn = map(float, rows[-1])
+    return dict(wall=wall, cpu=cpu, slide=slide, turn=turn)
+
+
+def run_once(command, a_scene, settings, steps, folder, name):
+    """Run the input; return the log and the processor time of the whole program [s]."""
+    last = STEPS.format(dt=float(a_scene["dt"]), gravity=float(a_scene["gravity"]), steps=steps, thermo=max(steps, 1))
     (Path(folder) / "scene.in").write_text(settings + last)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [*command, "-in", "scene.in", "-log", "scene.log", "-screen", "none"],
         cwd=folder,
         capture_output=True,
         text=True,
     )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     log = (Path(folder) / "scene.log").read_text()
     if done.returncode or "Loop time" not in log:
         said = (done.stderr or log).strip().splitlines()[-1:]
         raise RuntimeError(f"{name} failed: {said}; its input is {folder}/scene.in")
-    wall = float(re.search(r"Loop time of (\S+)", log)[1])
-    share = re.search(r"([\d.]+)% CPU use", log)  # LIGGGHTS does not say
-    rows = [line.split() for line in log[: log.index("Loop time")].splitlines() if re.match(r"\s*\d+\s", line)]
-    _, slide, turn = map(float, rows[-1])
-    return dict(wall=wall, cpu=wall * (float(share[1]) / 100 if share else 1), slide=slide, turn=turn)
+    return log, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
