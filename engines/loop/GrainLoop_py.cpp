@@ -151,7 +151,7 @@ void bind_loop()
 		"Contacts of the last step, all at the positions of its beginning, as YADE's are after a step; those at the present "
 		"positions\n"
 		"while a step is under way (in engines before GrainLoop). Arrays: i, j, slipping, overlap [m], slip of i along z x n [m] "
-	    "([N] with " +
+		"([N] with " +
 		laws::laws_that_remember_forces() +
 		",\nwhich remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).";

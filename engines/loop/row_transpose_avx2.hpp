@@ -1,5 +1,6 @@
 /// Rows to columns and back with AVX2: half a row is one register, four pairs (eight in single precision) are transposed at once.
 #pragma once
+#include "engines/loop/lanes_avx2.hpp"
 #include "engines/loop/row_at.hpp"
 
 namespace graindrive::loop {
@@ -55,7 +56,7 @@ struct Transposer<double> {
 	{
 		__m256d row[4];
 		for (int k = 0; k < 4; ++k) row[k] = difference.operator()<Wrapped>(links[k]);
-		transpose(row, [&](int q, __m256d column) { out[q].v = (Number::Vector)column; });
+		transpose_four(row, [&](int q, __m256d column) { out[q].v = (Number::Vector)column; });
 		const __m256d even = difference.sums(links[0], links[2]), odd = difference.sums(links[1], links[3]);
 		out[4].v = (Number::Vector)_mm256_unpacklo_pd(even, odd);
 		out[5].v = (Number::Vector)_mm256_unpackhi_pd(even, odd);
@@ -64,19 +65,7 @@ struct Transposer<double> {
 	static void store(const Number& x, const Number& y, const Number& friction, const Number& normal, PairForce<double>* to)
 	{
 		const __m256d columns[4] = { (__m256d)x.v, (__m256d)y.v, (__m256d)friction.v, (__m256d)normal.v };
-		transpose(columns, [&](int pair, __m256d row) { _mm256_store_pd(reinterpret_cast<double*>(to + pair), row); });
-	}
-
-private:
-	template <class Put>
-	static void transpose(const __m256d in[4], const Put& put)
-	{
-		const __m256d low_01 = _mm256_unpacklo_pd(in[0], in[1]), high_01 = _mm256_unpackhi_pd(in[0], in[1]);
-		const __m256d low_23 = _mm256_unpacklo_pd(in[2], in[3]), high_23 = _mm256_unpackhi_pd(in[2], in[3]);
-		put(0, _mm256_permute2f128_pd(low_01, low_23, 0x20));
-		put(1, _mm256_permute2f128_pd(high_01, high_23, 0x20));
-		put(2, _mm256_permute2f128_pd(low_01, low_23, 0x31));
-		put(3, _mm256_permute2f128_pd(high_01, high_23, 0x31));
+		transpose_four(columns, [&](int pair, __m256d row) { _mm256_store_pd(reinterpret_cast<double*>(to + pair), row); });
 	}
 };
 
@@ -110,17 +99,6 @@ struct Transposer<float> {
 			_mm256_store_ps(reinterpret_cast<float*>(to + k), _mm256_permute2f128_ps(row[k], row[k + 1], 0x20));
 			_mm256_store_ps(reinterpret_cast<float*>(to + 4 + k), _mm256_permute2f128_ps(row[k], row[k + 1], 0x31));
 		}
-	}
-
-private:
-	static void transpose_in_lanes(const __m256 in[4], __m256 out[4])
-	{
-		const __m256 low_01 = _mm256_unpacklo_ps(in[0], in[1]), high_01 = _mm256_unpackhi_ps(in[0], in[1]);
-		const __m256 low_23 = _mm256_unpacklo_ps(in[2], in[3]), high_23 = _mm256_unpackhi_ps(in[2], in[3]);
-		out[0] = _mm256_shuffle_ps(low_01, low_23, 0x44);
-		out[1] = _mm256_shuffle_ps(low_01, low_23, 0xee);
-		out[2] = _mm256_shuffle_ps(high_01, high_23, 0x44);
-		out[3] = _mm256_shuffle_ps(high_01, high_23, 0xee);
 	}
 };
 

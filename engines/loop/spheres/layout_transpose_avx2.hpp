@@ -1,5 +1,6 @@
 /// Rows to columns and back with AVX2: a group of four doubles is one register, four pairs (eight in single precision) at once.
 #pragma once
+#include "engines/loop/lanes_avx2.hpp"
 #include "engines/loop/simd_pack.hpp"
 #include "engines/loop/spheres/sphere_kernel.hpp"
 
@@ -41,17 +42,6 @@ struct LayoutDifference {
 
 template <class Row, class P>
 struct LayoutTransposer;
-
-template <class Put>
-inline void transpose_four(const __m256d in[4], const Put& put)
-{
-	const __m256d low_01 = _mm256_unpacklo_pd(in[0], in[1]), high_01 = _mm256_unpackhi_pd(in[0], in[1]);
-	const __m256d low_23 = _mm256_unpacklo_pd(in[2], in[3]), high_23 = _mm256_unpackhi_pd(in[2], in[3]);
-	put(0, _mm256_permute2f128_pd(low_01, low_23, 0x20));
-	put(1, _mm256_permute2f128_pd(high_01, high_23, 0x20));
-	put(2, _mm256_permute2f128_pd(low_01, low_23, 0x31));
-	put(3, _mm256_permute2f128_pd(high_01, high_23, 0x31));
-}
 
 /// The two halves of a line.
 struct HalfLines {
@@ -120,17 +110,6 @@ struct LayoutTransposer<Row, float> {
 			};
 			put(pair, HalfLines{ half(a[pair % 4]), half(b[pair % 4]) });
 		}
-	}
-
-private:
-	static inline void transpose_in_lanes(const __m256 in[4], __m256 out[4])
-	{
-		const __m256 low_01 = _mm256_unpacklo_ps(in[0], in[1]), high_01 = _mm256_unpackhi_ps(in[0], in[1]);
-		const __m256 low_23 = _mm256_unpacklo_ps(in[2], in[3]), high_23 = _mm256_unpackhi_ps(in[2], in[3]);
-		out[0] = _mm256_shuffle_ps(low_01, low_23, 0x44);
-		out[1] = _mm256_shuffle_ps(low_01, low_23, 0xee);
-		out[2] = _mm256_shuffle_ps(high_01, high_23, 0x44);
-		out[3] = _mm256_shuffle_ps(high_01, high_23, 0xee);
 	}
 };
 
