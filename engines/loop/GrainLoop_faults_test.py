@@ -167,7 +167,6 @@ def test_material_numbers_are_checked_under_every_law(law, bad):
 
 def test_a_run_that_fails_in_its_first_step_raises_every_time():
     """YADE's O.run(n, True) returned as if nothing had happened in a third of such runs."""
-    raised = 0
     for _ in range(12):
         disks.new_scene(dt=1e-3)
         disks.disk(0, 0), disks.disk(0.5, 0)
@@ -175,5 +174,3 @@ def test_a_run_that_fails_in_its_first_step_raises_every_time():
         grain_loop.use_grain_loop()
         with pytest.raises(RuntimeError, match="overlap"):
             O.run(5, True)
-        raised += 1
-    assert raised == 12
