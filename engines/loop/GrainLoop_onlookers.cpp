@@ -106,6 +106,11 @@ void GrainLoop::hear_bodies()
 		Written now = written_in(*(*scene->bodies)[id]);
 		const Written& then = written_[g];
 		if (now == then) continue;
+		if (now.material != then.material)
+			throw std::runtime_error(
+				"GrainLoop: body " + std::to_string(id) +
+				" was given another material, which its contacts do not follow; assign GrainLoop.friction, young, "
+				"... if they shall change, and then call read(), or use YADE's loop");
 		const bool free = stepper_->settings().grains[g].body == loop::free_grain;
 		if (is_member_or_body(g)) now.x = then.x, now.y = then.y;
 		if (!free) {  // followed at every step, or looked at in read_anew_what_changed
@@ -179,7 +184,7 @@ bool GrainLoop::counts_otherwise() const
 	return false;
 }
 
-/// Contacts follow the loop's own constants: a material that is changed or exchanged would change nothing.
+/// Contacts follow the loop's own constants: a material that is changed would change nothing.
 void GrainLoop::require_materials() const
 {
 	for (const KnownMaterial& known : materials_) {

@@ -6,6 +6,7 @@ import pytest
 from graindrive import grain_loop
 from yade import O
 from yade.minieigenHP import Vector3
+from yade.wrapper import FrictMat
 
 STEPS = 400
 
@@ -119,6 +120,17 @@ def test_a_material_that_changes_is_refused_until_the_loop_is_told(change):
     disks.run(10)
     exec(f"O.materials[0].{change}")
     with pytest.raises(RuntimeError, match="the constants of material 0 .* were changed"):
+        O.engines[-1]()
+    loop.read()
+    disks.run(10)
+
+
+def test_a_body_with_another_material_is_refused_until_the_loop_is_told():
+    loop = crowd(friction=0.2)
+    disks.run(10)
+    other = O.materials.append(FrictMat(density=1, young=1e6, poisson=0.3, frictionAngle=0.1))
+    O.bodies[len(O.bodies) - 1].material = O.materials[other]
+    with pytest.raises(RuntimeError, match="was given another material"):
         O.engines[-1]()
     loop.read()
     disks.run(10)
