@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/laws/every_law.hpp"
 #include "engines/loop/test_scenes.hpp"
 
@@ -17,8 +18,8 @@ namespace {
 
 class Checkpoint : public ::testing::Test {
 protected:
-	const std::string path = ::testing::TempDir() + "graindrive_checkpoint_test";
-	void TearDown() override { std::remove(path.c_str()); }
+	const graindrive::test::TemporaryFile file;
+	const std::string path = file.path();
 
 	static Scene busy()
 	{

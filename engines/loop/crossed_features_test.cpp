@@ -1,6 +1,7 @@
 /// All features of a scene crossed at small size: law, friction, rotation, gravity, damping, box, frozen grains, precision, threads.
 #include <gtest/gtest.h>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/loop/test_scenes.hpp"
 
 using namespace graindrive;
@@ -80,16 +81,15 @@ TEST(CrossedFeatures, follow_the_plain_loop_on_threads_and_in_single_precision)
 
 TEST(CrossedFeatures, go_on_from_a_checkpoint_to_the_last_bit)
 {
-	const std::string path = testing::TempDir() + "crossed.bin";
+	const graindrive::test::TemporaryFile file;
 	cross([&](const Features& f) {
 		SCOPED_TRACE(name_of(f));
 		Stepper straight(scene_with(f)), stopped(scene_with(f));
 		straight.step(steps);
 		stopped.step(steps / 2);
-		stopped.save(path);
-		const auto resumed = Stepper::restore(path, 2);
+		stopped.save(file.path());
+		const auto resumed = Stepper::restore(file.path(), 2);
 		resumed->step(steps - steps / 2);
 		EXPECT_TRUE(same_bits(straight, *resumed));
 	});
-	std::remove(path.c_str());
 }

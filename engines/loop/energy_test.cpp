@@ -1,9 +1,9 @@
 /// The energy ledger closes, and does not where something goes astray.
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <cstring>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/base/complaint.hpp"
 #include "engines/loop/test_scenes.hpp"
 
@@ -206,7 +206,7 @@ TEST(Energy, an_elastic_gas_keeps_its_energy_to_second_order_in_dt)
 
 TEST(Energy, the_ledger_does_not_touch_the_motion_and_has_the_same_bits_on_threads_and_after_a_checkpoint)
 {
-	const std::string path = ::testing::TempDir() + "graindrive_energy_test";
+	const graindrive::test::TemporaryFile file;
 	Scene scene = walled_bed(hertz(0.3, 500));
 	Stepper plain(scene), one(scene);
 	one.track_energy(true);
@@ -216,14 +216,13 @@ TEST(Energy, the_ledger_does_not_touch_the_motion_and_has_the_same_bits_on_threa
 	Stepper two(scene);
 	two.track_energy(true);
 	two.step(1500);
-	two.save(path);
-	const auto restored = Stepper::restore(path);
+	two.save(file.path());
+	const auto restored = Stepper::restore(file.path());
 	two.step(1500), restored->step(1500);
 	const Energies a = one.energy_ledger()->energies(), b = two.energy_ledger()->energies(),
 				   c = restored->energy_ledger()->energies();
 	EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
 	EXPECT_EQ(std::memcmp(&a, &c, sizeof a), 0);
-	std::remove(path.c_str());
 }
 
 TEST(Energy, the_time_step_must_stay)

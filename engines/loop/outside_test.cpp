@@ -1,9 +1,9 @@
 /// What comes from outside while a run goes on: pushes, other settings, moved grains, and restarts that do not notice.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <gtest/gtest.h>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/base/complaint.hpp"
 #include "engines/loop/guards.hpp"
 #include "engines/loop/test_scenes.hpp"
@@ -48,10 +48,9 @@ TEST(Restart, SearchesFallOnTheSameStepsWhereverABodyHasGone)
 {
 	Stepper whole(crossed_by_a_spinning_disk());
 	whole.step(20'000);
-	const std::string path = testing::TempDir() + "spinning.checkpoint";
-	whole.save(path);
-	const auto restored = Stepper::restore(path);
-	std::remove(path.c_str());
+	const graindrive::test::TemporaryFile file;
+	whole.save(file.path());
+	const auto restored = Stepper::restore(file.path());
 	whole.step(30'000);
 	restored->step(30'000);
 	EXPECT_GT(whole.searches_done(), 5);

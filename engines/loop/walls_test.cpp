@@ -1,8 +1,8 @@
 /// Flat walls: closed forms of a bounce, a slide and a pile; walls that move; the promise of the same bits.
 #include <gtest/gtest.h>
 
-#include <cstdio>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/base/complaint.hpp"
 #include "engines/loop/test_scenes.hpp"
 
@@ -202,7 +202,7 @@ TEST(Walls, walls_halt_at_the_area_fraction_asked_for)
 
 TEST(Walls, a_bed_under_a_lid_has_the_same_bits_on_any_number_of_threads_and_after_a_checkpoint)
 {
-	const std::string path = ::testing::TempDir() + "graindrive_walls_test";
+	const graindrive::test::TemporaryFile file;
 	Scene scene = loose_bed(0);
 	for (Grain& g : scene.grains) g.y /= 1.1;
 	scene.walls[1] = pressed_lid(5);
@@ -216,13 +216,12 @@ TEST(Walls, a_bed_under_a_lid_has_the_same_bits_on_any_number_of_threads_and_aft
 		scene.threads = threads;
 		Stepper many(scene);
 		many.step(1000), many.step(1);
-		many.save(path);
-		const auto restored = Stepper::restore(path, 2);
+		many.save(file.path());
+		const auto restored = Stepper::restore(file.path(), 2);
 		many.step(1999), restored->step(1999);
 		EXPECT_TRUE(same_bits(one, many) && same_walls(one, many)) << threads << " threads";
 		EXPECT_TRUE(same_bits(one, *restored) && same_walls(one, *restored));
 	}
-	std::remove(path.c_str());
 }
 
 TEST(Walls, springs_at_walls_survive_searches)

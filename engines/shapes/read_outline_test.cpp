@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/shapes/solid.hpp"
 #include "engines/shapes/test_support.hpp"
 
@@ -197,7 +198,8 @@ TEST(ReadOutline, says_what_the_text_is_if_it_is_no_text)
 
 TEST(ReadOutline, names_the_file)
 {
-	const std::string path = testing::TempDir() + "graindrive_outline.csv";
+	const graindrive::test::TemporaryFile file;
+	const std::string& path = file.path();
 	std::ofstream(path) << "0,0\n1,0\n";
 	EXPECT_TRUE(mentions(complaint([&] { read_outline(path); }), path + ": outline needs at least 3"));
 	std::ofstream(path) << "0,0\n1,0\n0,1\n";
