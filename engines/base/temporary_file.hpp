@@ -15,7 +15,8 @@ public:
 	TemporaryFile()
 	{
 		const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-		path_ = testing::TempDir() + "graindrive-" + test.test_suite_name() + "-" + test.name() + "-" + std::to_string(::getpid());
+		path_ =
+			testing::TempDir() + "graindrive-" + test.test_suite_name() + "-" + test.name() + "-" + std::to_string(::getpid());
 	}
 	TemporaryFile(const TemporaryFile&) = delete;
 	~TemporaryFile() { std::remove(path_.c_str()); }

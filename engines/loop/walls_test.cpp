@@ -1,7 +1,6 @@
 /// Flat walls: closed forms of a bounce, a slide and a pile; walls that move; the promise of the same bits.
 #include <gtest/gtest.h>
 
-
 #include "engines/base/temporary_file.hpp"
 #include "engines/base/complaint.hpp"
 #include "engines/loop/test_scenes.hpp"
