@@ -6,18 +6,28 @@
 namespace graindrive {
 
 const char* const FieldAverager::documentation =
-	"Area fraction, velocity, granular temperature, density and stress on a grid, averaged while the scene runs.\n\n"
+	"Area or solid fraction, velocity, granular temperature, density and stress on a grid, averaged while the scene runs.\n\n"
 	"kernel='diskBin': exact area of grain and bin in common, velocities with rotation, one velocity for each grain in each\n"
 	"bin: the mean over the common area (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian': exp(-r^2/w^2), cut at\n"
 	"`cutoff` w and normalised there (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001). kernel='sphere': averages in\n"
-	"spheres, here disks, of radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the exact\n"
+	"spheres, in the plane disks, of radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the "
+	"exact\n"
 	"integral of the kernel along the branch vector, kinetic stress by the fluctuations about the mean over all samples; both\n"
-	"positive in compression, pressure = tr/2.\n\n"
-	"Grains are disks that are free in x, y and rotation, belong to no clump and are not `body`. All others (walls, driven\n"
-	"disks, beads of an intruder) bound the grains: they have no part in area fraction, velocity and kinetic stress, and their\n"
-	"contacts count from the grain's centre to the contact point (Weinhart, Thornton, Luding, Bokhove 2012, after Goldhirsch\n"
-	"2010).\n\n"
-	"Arrays have the shape (phases, ny, nx), (..., 2) for vectors, (..., 2, 2) for stress[a, b]: force along a, branch along b.\n"
+	"positive in compression, pressure = tr/dimensions.\n\n"
+	"dimensions=2: disks, which are free in x, y and their rotation about z; areaFraction, density [kg/m^2], stress [N/m].\n"
+	"dimensions=3: spheres, which are free in all six; solidFraction, density [kg/m^3], stress [N/m^2]. Grains belong to no "
+	"clump\n"
+	"and are not `body`. All others (walls, driven disks, beads of an intruder) bound the grains: they have no part in area\n"
+	"fraction, velocity and kinetic stress, and their contacts count from the grain's centre to the contact point (Weinhart,\n"
+	"Thornton, Luding, Bokhove 2012, after Goldhirsch 2010).\n\n"
+	"averageAlong='y', in three dimensions: points in x and z, fields averaged over y, with the kernel's integral over y in "
+	"closed\n"
+	"form. A window as long as the period along y gives the mean of the fields in space over the period. In another window "
+	"count\n"
+	"the grains whose centres, and the parts of branch vectors that, lie in it; 'low' and 'high' are best the walls there.\n\n"
+	"Arrays have the shape (phases, ny, nx), in three dimensions (phases, nz, ny, nx) without the axis averaged over; (..., D) "
+	"for\n"
+	"vectors, (..., D, D) for stress[a, b]: force along a, branch along b; D = dimensions, also where an axis is averaged over.\n"
 	"A sample at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the contacts and before\n"
 	"drives and the integrator. Changing what decides the fields begins anew. Misleads where few grains pass: velocity is a\n"
 	"mean over grains, not over samples. Raises ValueError for a window, spacing, kernel or number out of range.";
@@ -32,39 +42,75 @@ constexpr Real phase_tolerance = 1e-6;  // of a phase: YADE's time is a sum of s
 void FieldAverager::check() const
 {
 	require(body >= -1, "FieldAverager.body must be the id of a body or clump, or -1 for a fixed origin", body);
-	require(origin.allFinite(), "FieldAverager.origin must be finite", origin.transpose());
-	require(low.allFinite(), "FieldAverager.low must be finite", low.transpose());
-	require(high.allFinite(), "FieldAverager.high must be finite", high.transpose());
-	require(std::isfinite(spacing) && spacing > 0, "FieldAverager.spacing must be positive and finite", spacing);
-	for (int k = 0; k < 2; ++k) {
-		const Real bins = (high[k] - low[k]) / spacing;
-		require(bins > 0.5 && bins < 1e6, "FieldAverager.high must exceed low, by up to 1e6 spacings, in x and y; number of bins",
-			bins);
-		require(std::abs(bins - std::round(bins)) < 1e-6,
-			"FieldAverager: the window must hold a whole number of bins in x and y; change spacing, low or high; number of bins",
-			bins);
-	}
-	require(kernel == "diskBin" || kernel == "gaussian" || kernel == "sphere",
-		"FieldAverager.kernel must be 'diskBin', 'gaussian' or 'sphere'", kernel);
-	require(std::isfinite(width) && width > 0, "FieldAverager.width must be positive and finite", width);
-	require(std::isfinite(cutoff) && cutoff > 0, "FieldAverager.cutoff must be positive and finite [w]", cutoff);
-	if (kernel != "diskBin") {
-		const Real reach = kernel == "gaussian" ? width * cutoff : width;
-		require(reach >= spacing / std::sqrt(2.0),
-			"FieldAverager: a kernel must reach a point of the grid from anywhere; width, times cutoff for the gaussian, must be "
-			"at least 0.71 spacing; take a wider kernel or a smaller spacing; reach",
-			reach);
-	}
+	require(dimensions == 2 || dimensions == 3, "FieldAverager.dimensions must be 2 or 3", dimensions);
+	require(averageAlong.empty() || averageAlong == "x" || averageAlong == "y" || averageAlong == "z",
+		"FieldAverager.averageAlong must be 'x', 'y', 'z' or '' for no axis", averageAlong);
+	require(averageAlong.empty() || dimensions == 3, "FieldAverager.averageAlong needs dimensions=3; FieldAverager.dimensions",
+		dimensions);
+	check_window();
+	check_kernel();
 	require(every >= 1, "FieldAverager.every must be at least 1", every);
 	require(phases >= 1 && phases <= 10000, "FieldAverager.phases must lie in 1..10000", phases);
 	require(std::isfinite(period) && period > 0, "FieldAverager.period must be positive and finite", period);
 	require(std::isfinite(phaseStart), "FieldAverager.phaseStart must be finite", phaseStart);
 	require(!relative || body >= 0, "FieldAverager.relative needs a body to be relative to; FieldAverager.body", body);
-	const Real numbers = Real(phases) * Real(sums_in_a_phase());
+	const Real numbers = Real(phases) * points(0) * points(1) * points(2) * numbers_at_a_point();
 	require(numbers <= most_numbers,
-		"FieldAverager: phases, bins and what is summed (5 numbers, 14 with stress) must make at most 2e8 numbers; take larger "
-		"bins",
+		"FieldAverager: phases, bins and what is summed (5 numbers, 14 with stress; in three dimensions 6 and 24) must make at "
+		"most "
+		"2e8 numbers; take larger bins",
 		numbers);
+}
+
+void FieldAverager::check_window() const
+{
+	require(origin.allFinite(), "FieldAverager.origin must be finite", origin.transpose());
+	require(low.allFinite(), "FieldAverager.low must be finite", low.transpose());
+	require(high.allFinite(), "FieldAverager.high must be finite", high.transpose());
+	require(std::isfinite(spacing) && spacing > 0, "FieldAverager.spacing must be positive and finite", spacing);
+	for (int k = 0; k < dimensions; ++k) {
+		if (!has_points_along(k)) {
+			require(high[k] > low[k], "FieldAverager.high must exceed low along averageAlong; high - low", high[k] - low[k]);
+			continue;
+		}
+		const std::string axes = dimensions == 2 ? "x and y" : "x, y and z";
+		const Real bins = (high[k] - low[k]) / spacing;
+		require(bins > 0.5 && bins < 1e6,
+			("FieldAverager.high must exceed low, by up to 1e6 spacings, in " + axes + "; number of bins").c_str(), bins);
+		require(std::abs(bins - std::round(bins)) < 1e-6,
+			("FieldAverager: the window must hold a whole number of bins in " + axes +
+				"; change spacing, low or high; number of bins")
+				.c_str(),
+			bins);
+	}
+}
+
+void FieldAverager::check_kernel() const
+{
+	require(kernel == "diskBin" || kernel == "gaussian" || kernel == "sphere",
+		"FieldAverager.kernel must be 'diskBin', 'gaussian' or 'sphere'", kernel);
+	require(kernel != "diskBin" || dimensions == 2,
+		"FieldAverager.kernel='diskBin' shares out areas of disks and needs dimensions=2; take 'gaussian' or 'sphere' for "
+		"spheres; "
+		"FieldAverager.dimensions",
+		dimensions);
+	require(std::isfinite(width) && width > 0, "FieldAverager.width must be positive and finite", width);
+	require(std::isfinite(cutoff) && cutoff > 0, "FieldAverager.cutoff must be positive and finite [w]", cutoff);
+	if (kernel == "diskBin") return;
+	const bool square = dimensions == 2 || !averageAlong.empty();
+	const Real reach = kernel == "gaussian" ? width * cutoff : width, diagonal = std::sqrt(square ? 2.0 : 3.0);
+	require(reach >= spacing * diagonal / 2,
+		(std::string(
+			 "FieldAverager: a kernel must reach a point of the grid from anywhere; width, times cutoff for the gaussian, must "
+			 "be at least ") +
+			(square ? "0.71" : "0.87") + " spacing; take a wider kernel or a smaller spacing; reach")
+			.c_str(),
+		reach);
+}
+
+int FieldAverager::numbers_at_a_point() const
+{
+	return in_dimension([&](auto d) { return sums_at_a_point<d()>(stress); });
 }
 
 void FieldAverager::clear()
@@ -81,6 +127,7 @@ std::string FieldAverager::description() const
 	words.precision(17);
 	words << kernel << ' ' << width << ' ' << cutoff << ' ' << body << ' ' << relative << ' ' << stress << ' ' << phases << ' '
 		  << period << ' ' << phaseStart << ' ' << spacing << ' ' << low.transpose() << ' ' << high.transpose();
+	if (dimensions == 3) words << " 3D " << averageAlong;
 	return words.str();
 }
 
@@ -90,12 +137,28 @@ bool FieldAverager::sums_fit() const
 	       sumsData.size() == phases * sums_in_a_phase();
 }
 
-FieldPlan FieldAverager::plan() const
+template <>
+FieldPlan<2> FieldAverager::plan<2>() const
 {
-	FieldKernel chosen = DiskBinKernel{};
-	if (kernel == "gaussian") chosen = GaussianKernel{ width, cutoff };
-	if (kernel == "sphere") chosen = SphereKernel{ width };
-	return { FieldGrid{ low.head<2>(), spacing, points(0), points(1) }, chosen, view_.periods.head<2>(), stress };
+	FieldKernel<2> chosen = DiskBinKernel{};
+	if (kernel == "gaussian") chosen = GaussianKernel<2>{ width, cutoff };
+	if (kernel == "sphere") chosen = SphereKernel<2>{ width };
+	return { FieldGrid<2>{ low.head<2>(), spacing, { points(0), points(1) } }, chosen, view_.periods.head<2>(), stress };
+}
+
+template <>
+FieldPlan<3> FieldAverager::plan<3>() const
+{
+	FieldGrid<3> grid{ low, spacing, { points(0), points(1), points(2) } };
+	FieldKernel<3> chosen = SphereKernel<3>{ width };
+	if (kernel == "gaussian") chosen = GaussianKernel<3>{ width, cutoff };
+	if (const int axis = averaged_axis(); axis >= 0) {
+		grid.averaged = axis;
+		grid.length = high[axis] - low[axis];
+		chosen = AveragedSphereKernel{ width };
+		if (kernel == "gaussian") chosen = AveragedGaussianKernel{ { width, cutoff } };
+	}
+	return { grid, chosen, view_.periods, stress };
 }
 
 int FieldAverager::phase_at(Real time) const
@@ -110,13 +173,20 @@ void FieldAverager::action()
 	if (!sums_fit()) clear();
 	source_.of(scene).look(view_, stress);
 	const Frame now = frame();
-	leave_out_the_body();
+	leave_out_what_is_no_grain();
+	if (dimensions == 2) require_a_plane();
 	const int phase = phase_at(scene->time);
 	Real* sums = sumsData.data() + phase * sums_in_a_phase();
-	const FieldPlan by = plan();
-	add_grains(by, now, sums);
-	if (stress) add_contacts(by, now, sums);
+	in_dimension([&](auto d) { add_sample<d()>(now, sums); });
 	++samplesData[phase];
+}
+
+template <int D>
+void FieldAverager::add_sample(const Frame& frame, Real* sums) const
+{
+	const FieldPlan<D> by = plan<D>();
+	add_grains(by, frame, sums);
+	if (stress) add_contacts(by, frame, sums);
 }
 
 /// A clump is true in YADE at every step; a single disk is asked of the loop, which may not have written it.
@@ -131,28 +201,49 @@ FieldAverager::Frame FieldAverager::frame()
 	return now;
 }
 
-void FieldAverager::leave_out_the_body()
+/// A view calls free what is free in the plane; in space a grain must be free along z and about x and y as well.
+void FieldAverager::leave_out_what_is_no_grain()
 {
-	for (GrainState& grain : view_.grains)
+	constexpr unsigned out_of_plane = yade::State::DOF_Z | yade::State::DOF_RX | yade::State::DOF_RY;
+	for (GrainState& grain : view_.grains) {
 		if (grain.id == body) grain.free = false;
+		if (dimensions == 3 && grain.free)
+			grain.free = !(body_of(*scene, grain.id, class_name).state->blockedDOFs & out_of_plane);
+	}
 }
 
-void FieldAverager::add_grains(const FieldPlan& plan, const Frame& frame, Real* sums) const
+/// Areas of spheres at different heights would be added up without a word.
+void FieldAverager::require_a_plane() const
+{
+	const GrainState* first = nullptr;
+	for (const GrainState& grain : view_.grains) {
+		if (!grain.free) continue;
+		if (!first) first = &grain;
+		if (std::abs(grain.position[2] - first->position[2]) <= grain.radius) continue;
+		throw std::runtime_error("FieldAverager.dimensions=2 reads disks in a plane of one z, but the centres of grains " +
+								 std::to_string(first->id) + " and " + std::to_string(grain.id) +
+								 " differ in z by more than a radius; set dimensions=3");
+	}
+}
+
+template <int D>
+void FieldAverager::add_grains(const FieldPlan<D>& plan, const Frame& frame, Real* sums) const
 {
 	for (const GrainState& g : view_.grains) {
 		if (!g.free) continue;
 		const Vector3r position = g.position - frame.origin, velocity = g.velocity - frame.velocity;
-		add_grain(plan, { position.head<2>(), velocity.head<2>(), g.spin[2], g.radius, g.mass }, sums);
+		add_grain<D>(plan, { position.head<D>(), velocity.head<D>(), g.spin[2], g.radius, g.mass }, sums);
 	}
 }
 
-void FieldAverager::add_contacts(const FieldPlan& plan, const Frame& frame, Real* sums) const
+template <int D>
+void FieldAverager::add_contacts(const FieldPlan<D>& plan, const Frame& frame, Real* sums) const
 {
 	for (const GrainContact& c : view_.contacts) {
 		const GrainState& first = view_.grains[c.first];
 		const GrainState* second = c.second == no_grain ? nullptr : &view_.grains[c.second];
 		const auto add = [&](const GrainState& from, const Vector3r& branch, const Vector3r& force) {
-			add_contact(plan, { (from.position - frame.origin).head<2>(), branch.head<2>(), force.head<2>() }, sums);
+			add_contact<D>(plan, { (from.position - frame.origin).head<D>(), branch.head<D>(), force.head<D>() }, sums);
 		};
 		if (!second)
 			first.free ? add(first, (first.radius - c.overlap) * c.normal, c.force) : void();
@@ -167,11 +258,15 @@ void FieldAverager::add_contacts(const FieldPlan& plan, const Frame& frame, Real
 
 std::vector<int> FieldAverager::samples() const { return sums_fit() ? samplesData : std::vector<int>(phases, 0); }
 
-FieldMeans FieldAverager::means(int phase, int point) const
+template <int D>
+FieldMeans<D> FieldAverager::means(int phase, int point) const
 {
-	const std::size_t at = phase * sums_in_a_phase() + std::size_t(point) * sums_at_a_point(stress);
-	return means_at(sumsData.data() + at, samplesData[phase], stress);
+	const std::size_t at = phase * sums_in_a_phase() + std::size_t(point) * sums_at_a_point<D>(stress);
+	return means_at<D>(sumsData.data() + at, samplesData[phase], stress);
 }
+
+template FieldMeans<2> FieldAverager::means<2>(int, int) const;
+template FieldMeans<3> FieldAverager::means<3>(int, int) const;
 
 }  // namespace graindrive
 

@@ -17,10 +17,10 @@ public:
 		using Self = FieldAverager;
 		visit("body", &Self::body, "id of the body or clump whose centre is the window's origin; -1: the fixed point `origin`");
 		visit("origin", &Self::origin, "origin of the window where there is no body [m]; may be moved while it averages");
-		visit("low", &Self::low, "lower left corner of the window from its origin, (x, y, 0) [m]");
-		visit("high", &Self::high, "upper right corner of the window from its origin, (x, y, 0) [m]");
-		visit("spacing", &Self::spacing, "edge of the square bins, distance of the points in their middles [m]");
-		visit("kernel", &Self::kernel, "'diskBin', 'gaussian' or 'sphere'");
+		visit("low", &Self::low, "lowest corner of the window from its origin [m]; z counts in three dimensions only");
+		visit("high", &Self::high, "highest corner of the window from its origin [m]; z counts in three dimensions only");
+		visit("spacing", &Self::spacing, "edge of the bins, squares or cubes, and distance of the points in their middles [m]");
+		visit("kernel", &Self::kernel, "'diskBin' (in the plane only), 'gaussian' or 'sphere'");
 		visit("width", &Self::width,
 			"w of the Gaussian, or the sphere's radius [m], wide enough to reach a grid point from anywhere; 'diskBin' has none");
 		visit("cutoff", &Self::cutoff, "where the Gaussian ends [w]");
@@ -33,28 +33,46 @@ public:
 		visit("samplesData", &Self::samplesData, "samples by phase, for save and load");
 		visit("sumsData", &Self::sumsData, "running sums, for save and load");
 		visit("averagedAs", &Self::averagedAs, "the settings that the sums were made with, for save and load");
+		visit("dimensions", &Self::dimensions, "2: disks in the plane of x and y; 3: spheres");
+		visit("averageAlong", &Self::averageAlong,
+			"'x', 'y' or 'z', in three dimensions: one mean over the window's whole length along that axis in place of points; "
+			"'': none");
 	}
 	void check() const;
 	void action() override;
 	bool reads_all_bodies() const override { return false; }
 
 	void clear();
-	FieldPlan plan() const;
-	/// Number of points along an axis.
-	int points(int axis) const { return int(std::lround((high[axis] - low[axis]) / spacing)); }
+	template <int D>
+	FieldPlan<D> plan() const;
+	/// The axis that fields are averaged over, -1 if none.
+	int averaged_axis() const { return averageAlong.empty() ? -1 : averageAlong[0] - 'x'; }
+	/// True for an axis along which the grid has points.
+	bool has_points_along(int axis) const { return axis < dimensions && axis != averaged_axis(); }
+	/// Number of points along an axis; 1 where the grid has none.
+	int points(int axis) const { return has_points_along(axis) ? int(std::lround((high[axis] - low[axis]) / spacing)) : 1; }
+	/// Number of points of the grid.
+	std::size_t all_points() const { return std::size_t(points(0)) * points(1) * points(2); }
+	/// Calls act(D) with the dimension as a type, std::integral_constant<int, D>.
+	template <class Act>
+	auto in_dimension(Act&& act) const
+	{
+		return dimensions == 3 ? act(std::integral_constant<int, 3>()) : act(std::integral_constant<int, 2>());
+	}
 	/// Phase of a time, 0 to phases - 1.
 	int phase_at(Real time) const;
 	/// Samples by phase; zeros where settings have changed since.
 	std::vector<int> samples() const;
 	/// False before the first sample and after a change of what decides the fields, until the next one.
 	bool sums_fit() const;
-	/// Fields at a point of the grid, place j nx + i; only while `sums_fit`.
-	FieldMeans means(int phase, int point) const;
+	/// Fields at a point of the grid (FieldGrid::point); only while `sums_fit`.
+	template <int D>
+	FieldMeans<D> means(int phase, int point) const;
 
-	int body = -1, every = 1, phases = 1;
+	int body = -1, every = 1, phases = 1, dimensions = 2;
 	Vector3r origin = Vector3r::Zero(), low = Vector3r(-15, -15, 0), high = Vector3r(15, 15, 0);
 	Real spacing = 0.5, width = 1, cutoff = 3, period = 1, phaseStart = 0;
-	std::string kernel = "gaussian";
+	std::string kernel = "gaussian", averageAlong;
 	bool relative = false, stress = true;
 	std::vector<int> samplesData;
 	std::vector<Real> sumsData;
@@ -68,12 +86,20 @@ private:
 	SceneGrains source_;
 	SceneView view_;
 
-	std::size_t sums_in_a_phase() const { return std::size_t(points(0)) * points(1) * sums_at_a_point(stress); }
+	int numbers_at_a_point() const;
+	std::size_t sums_in_a_phase() const { return all_points() * numbers_at_a_point(); }
 	std::string description() const;
+	void check_window() const;
+	void check_kernel() const;
 	Frame frame();
-	void leave_out_the_body();
-	void add_grains(const FieldPlan& plan, const Frame& frame, Real* sums) const;
-	void add_contacts(const FieldPlan& plan, const Frame& frame, Real* sums) const;
+	void leave_out_what_is_no_grain();
+	void require_a_plane() const;
+	template <int D>
+	void add_sample(const Frame& frame, Real* sums) const;
+	template <int D>
+	void add_grains(const FieldPlan<D>& plan, const Frame& frame, Real* sums) const;
+	template <int D>
+	void add_contacts(const FieldPlan<D>& plan, const Frame& frame, Real* sums) const;
 };
 
 }  // namespace graindrive

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "engines/measures/disk_disk_overlap.hpp"
+#include "engines/measures/ball_overlap.hpp"
 
 namespace graindrive {
 namespace {

@@ -8,14 +8,14 @@ namespace {
 
 const Vector2r places[] = { { 0, 0 }, { 0.013, -0.37 }, { -0.5, 0.21 }, { 0.3, 0.3 } };
 
-FieldGrid grid_with(Real spacing)
+FieldGrid<2> grid_with(Real spacing)
 {
 	const int n = int(std::round(12 / spacing));
 	return { { -6, -6 }, spacing, n, n };
 }
 
 template <class Kernel>
-Real area_given(const Kernel& kernel, const FieldGrid& grid, const Vector2r& at, Real radius)
+Real area_given(const Kernel& kernel, const FieldGrid<2>& grid, const Vector2r& at, Real radius)
 {
 	Real sum = 0;
 	kernel.grain(grid, at, radius, [&](int, Real share, const Vector2r&) { sum += share; });
@@ -23,7 +23,7 @@ Real area_given(const Kernel& kernel, const FieldGrid& grid, const Vector2r& at,
 }
 
 template <class Kernel>
-Real line_given(const Kernel& kernel, const FieldGrid& grid, const Vector2r& from, const Vector2r& branch)
+Real line_given(const Kernel& kernel, const FieldGrid<2>& grid, const Vector2r& from, const Vector2r& branch)
 {
 	Real sum = 0;
 	kernel.line(grid, from, branch, [&](int, Real share) { sum += share; });
@@ -44,18 +44,18 @@ TEST(FieldKernels, CutGaussianGivesTheWholeGrain)
 	for (const Vector2r& at : places) {
 		// The kernel ends with a step of e^-9 of its peak: the sum misses at most that along its rim, 2 pi 3w times half a spacing.
 		const Real step = std::exp(-9) / pi * 2 * pi * 3 * 0.05 / 2;
-		EXPECT_NEAR(area_given(GaussianKernel{ 1, 3 }, grid_with(0.05), at, 0.5), pi / 4, pi / 4 * step);
-		EXPECT_NEAR(line_given(GaussianKernel{ 1, 3 }, grid_with(0.05), at, { 0.4, -0.83 }), 1, step);
+		EXPECT_NEAR(area_given(GaussianKernel<2>{ 1, 3 }, grid_with(0.05), at, 0.5), pi / 4, pi / 4 * step);
+		EXPECT_NEAR(line_given(GaussianKernel<2>{ 1, 3 }, grid_with(0.05), at, { 0.4, -0.83 }), 1, step);
 		// Where the step is e^-25 nothing is missing (Poisson summation: 4 exp(-(pi w/spacing)^2)).
-		EXPECT_NEAR(area_given(GaussianKernel{ 0.8, 5 }, grid_with(0.4), at, 0.5), pi / 4, 1e-11);
-		EXPECT_NEAR(line_given(GaussianKernel{ 0.8, 5 }, grid_with(0.4), at, { 0.4, -0.83 }), 1, 2e-11);
+		EXPECT_NEAR(area_given(GaussianKernel<2>{ 0.8, 5 }, grid_with(0.4), at, 0.5), pi / 4, 1e-11);
+		EXPECT_NEAR(line_given(GaussianKernel<2>{ 0.8, 5 }, grid_with(0.4), at, { 0.4, -0.83 }), 1, 2e-11);
 	}
 }
 
 TEST(FieldKernels, CutGaussianIntegratesToOneInClosedForm)
 {
 	for (const Real c : { 0.7, 2.0, 3.0 }) {
-		const GaussianKernel kernel{ 1.3, c };
+		const GaussianKernel<2> kernel{ 1.3, c };
 		Real sum = 0;
 		const int n = 100000;
 		for (int k = 0; k < n; ++k) {
@@ -69,27 +69,27 @@ TEST(FieldKernels, CutGaussianIntegratesToOneInClosedForm)
 TEST(FieldKernels, SpheresGiveTheWholeGrain)
 {
 	for (const Vector2r& at : places) {
-		EXPECT_NEAR(area_given(SphereKernel{ 1 }, grid_with(0.025), at, 0.5), pi / 4, 1e-5);
+		EXPECT_NEAR(area_given(SphereKernel<2>{ 1 }, grid_with(0.025), at, 0.5), pi / 4, 1e-5);
 		// The indicator of a disk, counted on a grid: Gauss's circle problem, a rim of a thousandth of the area.
-		EXPECT_NEAR(line_given(SphereKernel{ 1 }, grid_with(0.025), at, { 0.4, -0.83 }), 1, 1e-3);
+		EXPECT_NEAR(line_given(SphereKernel<2>{ 1 }, grid_with(0.025), at, { 0.4, -0.83 }), 1, 1e-3);
 	}
 }
 
 TEST(FieldKernels, OnlyTheWindowIsWrittenTo)
 {
-	const FieldGrid small{ { 0, 0 }, 0.1, 4, 3 };
+	const FieldGrid<2> small{ { 0, 0 }, 0.1, 4, 3 };
 	const auto inside = [&](int point, auto&&...) { ASSERT_TRUE(point >= 0 && point < small.size()); };
 	for (const Vector2r& at : { Vector2r(0, 0), Vector2r(0.4, 0.3), Vector2r(-0.45, 0.1), Vector2r(30, -2) }) {
 		DiskBinKernel{}.grain(small, at, 0.5, inside);
-		GaussianKernel{ 1, 3 }.grain(small, at, 0.5, inside);
-		SphereKernel{ 1 }.line(small, at, { 0.4, 0.9 }, inside);
+		GaussianKernel<2>{ 1, 3 }.grain(small, at, 0.5, inside);
+		SphereKernel<2>{ 1 }.line(small, at, { 0.4, 0.9 }, inside);
 		DiskBinKernel{}.line(small, at, { 0.4, 0.9 }, inside);
 	}
 }
 
 TEST(FieldGrid, ImagesOfAPeriodicBox)
 {
-	const FieldGrid window{ { -2, -2 }, 1, 4, 4 };
+	const FieldGrid<2> window{ { -2, -2 }, 1, 4, 4 };
 	const auto images = [&](const Vector2r& at, const Vector2r& periods) {
 		int found = 0;
 		window.visit_images(at, { 0.5, 0.5 }, periods, [&](const Vector2r& shift) {

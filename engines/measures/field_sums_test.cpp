@@ -9,16 +9,20 @@
 namespace graindrive {
 namespace {
 
-const FieldKernel kernels[] = { DiskBinKernel{}, GaussianKernel{ 1.5, 5 }, SphereKernel{ 1.5 } };
+const FieldKernel<2> kernels[] = { DiskBinKernel{}, GaussianKernel<2>{ 1.5, 5 }, SphereKernel<2>{ 1.5 } };
 
 class Fields {
 public:
-	explicit Fields(const FieldPlan& plan) : plan(plan), sums(std::size_t(plan.grid.size()) * sums_at_a_point(plan.stress), 0) {}
-	void add(const FieldGrain& grain) { add_grain(plan, grain, sums.data()); }
-	void add(const FieldContact& contact) { add_contact(plan, contact, sums.data()); }
-	FieldMeans at(int point, Real samples = 1) const
+	explicit Fields(const FieldPlan<2>& plan)
+		: plan(plan),
+		  sums(std::size_t(plan.grid.size()) * sums_at_a_point<2>(plan.stress), 0)
 	{
-		return means_at(sums.data() + std::size_t(point) * sums_at_a_point(plan.stress), samples, plan.stress);
+	}
+	void add(const FieldGrain<2>& grain) { add_grain<2>(plan, grain, sums.data()); }
+	void add(const FieldContact<2>& contact) { add_contact<2>(plan, contact, sums.data()); }
+	FieldMeans<2> at(int point, Real samples = 1) const
+	{
+		return means_at<2>(sums.data() + std::size_t(point) * sums_at_a_point<2>(plan.stress), samples, plan.stress);
 	}
 	template <class Value>
 	auto sum(Value&& value, Real samples = 1) const
@@ -29,23 +33,23 @@ public:
 	}
 
 private:
-	FieldPlan plan;
+	FieldPlan<2> plan;
 	std::vector<Real> sums;
 };
 
-FieldPlan box(const FieldKernel& kernel, Real length, int n, bool stress = true)
+FieldPlan<2> box(const FieldKernel<2>& kernel, Real length, int n, bool stress = true)
 {
-	return { FieldGrid{ { -length / 2, -length / 2 }, length / n, n, n }, kernel, { length, length }, stress };
+	return { FieldGrid<2>{ { -length / 2, -length / 2 }, length / n, n, n }, kernel, { length, length }, stress };
 }
 
-std::vector<FieldGrain> random_disks(int count, Real length)
+std::vector<FieldGrain<2>> random_disks(int count, Real length)
 {
 	std::mt19937 random(17);
 	std::uniform_real_distribution<Real> place(-3 * length, 3 * length), radius(0.3, 0.6), speed(-1, 1);
-	std::vector<FieldGrain> all(count);
-	for (FieldGrain& g : all)
+	std::vector<FieldGrain<2>> all(count);
+	for (FieldGrain<2>& g : all)
 		g = { { place(random), place(random) }, { speed(random), 2 + speed(random) }, 3 * speed(random), radius(random), 0 };
-	for (FieldGrain& g : all) g.mass = (1 + speed(random) / 2) * pi * g.radius * g.radius;
+	for (FieldGrain<2>& g : all) g.mass = (1 + speed(random) / 2) * pi * g.radius * g.radius;
 	return all;
 }
 
@@ -65,28 +69,28 @@ TEST(FieldSums, RandomDisksKeepTheirAreaMassAndMomentum)
 		Fields bins(box(DiskBinKernel{}, length, n));
 		for (const auto& g : disks) bins.add(g);
 		const Real bin = length / n * length / n;
-		EXPECT_NEAR(bin * bins.sum([](const FieldMeans& m) { return m.area_fraction; }), disk_area, 1e-12 * disk_area);
-		EXPECT_NEAR(bin * bins.sum([](const FieldMeans& m) { return m.density; }), mass, 1e-12 * mass);
+		EXPECT_NEAR(bin * bins.sum([](const FieldMeans<2>& m) { return m.fraction; }), disk_area, 1e-12 * disk_area);
+		EXPECT_NEAR(bin * bins.sum([](const FieldMeans<2>& m) { return m.density; }), mass, 1e-12 * mass);
 		// Spin moves parts of a grain against each other, never the whole.
-		const Vector2r given = bin * bins.sum([](const FieldMeans& m) -> Vector2r {
-			return m.area_fraction > 0 ? Vector2r(m.area_fraction * m.velocity) : Vector2r(Vector2r::Zero());
+		const Vector2r given = bin * bins.sum([](const FieldMeans<2>& m) -> Vector2r {
+			return m.fraction > 0 ? Vector2r(m.fraction * m.velocity) : Vector2r(Vector2r::Zero());
 		});
 		EXPECT_NEAR((given - flow).norm(), 0, 1e-12 * flow.norm());
 	}
-	Fields smooth(box(GaussianKernel{ 1.5, 5 }, length, 20));
+	Fields smooth(box(GaussianKernel<2>{ 1.5, 5 }, length, 20));
 	for (const auto& g : disks) smooth.add(g);
-	EXPECT_NEAR(0.25 * smooth.sum([](const FieldMeans& m) { return m.area_fraction; }), disk_area, 1e-8 * disk_area);
+	EXPECT_NEAR(0.25 * smooth.sum([](const FieldMeans<2>& m) { return m.fraction; }), disk_area, 1e-8 * disk_area);
 }
 
 TEST(FieldSums, GaussianOfOneGrain)
 {
-	const FieldPlan plan{ FieldGrid{ { -2, -2 }, 1, 4, 4 }, GaussianKernel{ 1, 3 }, { 0, 0 }, false };
+	const FieldPlan<2> plan{ FieldGrid<2>{ { -2, -2 }, 1, 4, 4 }, GaussianKernel<2>{ 1, 3 }, { 0, 0 }, false };
 	Fields fields(plan);
-	fields.add(FieldGrain{ { 0.2, -0.1 }, { 3, 4 }, 100, 0.5, 2 });
-	const Vector2r point = plan.grid.centre(1, 2);
+	fields.add(FieldGrain<2>{ { 0.2, -0.1 }, { 3, 4 }, 100, 0.5, 2 });
+	const Vector2r point = plan.grid.centre({ 1, 2 });
 	const Real w = std::exp(-(point - Vector2r(0.2, -0.1)).squaredNorm()) / (pi * (1 - std::exp(-9)));
-	const FieldMeans m = fields.at(2 * 4 + 1);
-	EXPECT_NEAR(m.area_fraction, pi / 4 * w, 1e-16);
+	const FieldMeans<2> m = fields.at(2 * 4 + 1);
+	EXPECT_NEAR(m.fraction, pi / 4 * w, 1e-16);
 	EXPECT_NEAR(m.density, 2 * w, 1e-15);
 	EXPECT_EQ((m.velocity - Vector2r(3, 4)).norm(), 0);  // the grain's own: Eq. (3.2) has no spin
 	EXPECT_EQ(m.temperature, 0);
@@ -96,19 +100,19 @@ TEST(FieldSums, RigidRotationIsExact)
 {
 	// Large disks, each turning with the whole: in every bin inside one of them the velocity is omega x r, and nothing fluctuates.
 	const Real omega = -0.7;
-	const FieldPlan plan{ FieldGrid{ { -2, -2 }, 0.1, 40, 40 }, DiskBinKernel{}, { 0, 0 }, false };
+	const FieldPlan<2> plan{ FieldGrid<2>{ { -2, -2 }, 0.1, 40, 40 }, DiskBinKernel{}, { 0, 0 }, false };
 	Fields fields(plan);
-	const FieldGrain disks[] = { { { -0.6, 0.1 }, {}, omega, 1, pi }, { { 1.1, -0.4 }, {}, omega, 0.7, 1 } };
-	for (FieldGrain g : disks) {
+	const FieldGrain<2> disks[] = { { { -0.6, 0.1 }, {}, omega, 1, pi }, { { 1.1, -0.4 }, {}, omega, 0.7, 1 } };
+	for (FieldGrain<2> g : disks) {
 		g.velocity = omega * Vector2r(-g.position[1], g.position[0]);
 		fields.add(g);
 		fields.add(g);  // a second frame
 	}
 	int whole = 0;
 	for (int p = 0; p < plan.grid.size(); ++p) {
-		const FieldMeans m = fields.at(p, 2);
-		if (m.area_fraction < 1 - 1e-12) continue;
-		const Vector2r r = plan.grid.centre(p % 40, p / 40), expected = omega * Vector2r(-r[1], r[0]);
+		const FieldMeans<2> m = fields.at(p, 2);
+		if (m.fraction < 1 - 1e-12) continue;
+		const Vector2r r = plan.grid.centre(plan.grid.place(p)), expected = omega * Vector2r(-r[1], r[0]);
 		EXPECT_NEAR((m.velocity - expected).norm(), 0, 1e-14);
 		EXPECT_NEAR(m.temperature, 0, 1e-28);
 		++whole;
@@ -122,10 +126,10 @@ TEST(FieldSums, TemperatureOfTwoFramesIsAboutTheirMean)
 		Fields fields(box(DiskBinKernel{}, 4, 4));
 		const Vector2r u(3e-3, 4e-3);
 		for (const Real sign : { -1.0, 1.0, -1.0, 1.0 })
-			fields.add(FieldGrain{ { 0.4, -0.3 }, Vector2r(stream, -stream) + sign * u, 0, 0.5, 2 });
+			fields.add(FieldGrain<2>{ { 0.4, -0.3 }, Vector2r(stream, -stream) + sign * u, 0, 0.5, 2 });
 		for (int p = 0; p < 16; ++p) {
-			const FieldMeans m = fields.at(p, 4);
-			if (!(m.area_fraction > 0)) continue;
+			const FieldMeans<2> m = fields.at(p, 4);
+			if (!(m.fraction > 0)) continue;
 			// 1e6 and 5e-3 differ by 2e8: a difference of mean squares would leave nothing.
 			EXPECT_NEAR(m.temperature, u.squaredNorm() / 2, stream > 0 ? 1e-6 * u.squaredNorm() : 1e-19);
 			EXPECT_NEAR(m.kinetic_stress(0, 1), m.density * u[0] * u[1], stream > 0 ? 1e-5 * m.density * u[0] * u[1] : 1e-19);
@@ -139,7 +143,7 @@ TEST(FieldSums, KineticStressOfAGas)
 	Fields fields(box(DiskBinKernel{}, 10, 1));
 	Real mass = 0;
 	Vector2r momentum = Vector2r::Zero();
-	for (FieldGrain g : disks) {
+	for (FieldGrain<2> g : disks) {
 		g.spin = 0;
 		fields.add(g);
 		mass += g.mass, momentum += g.mass * g.velocity;
@@ -155,19 +159,19 @@ TEST(FieldSums, KineticStressOfAGas)
 TEST(FieldSums, NoGrainIsNoVelocityAndNoSampleIsNothing)
 {
 	Fields fields(box(DiskBinKernel{}, 4, 4));
-	EXPECT_EQ(fields.at(3).area_fraction, 0);
+	EXPECT_EQ(fields.at(3).fraction, 0);
 	EXPECT_TRUE(std::isnan(fields.at(3).velocity[0]) && std::isnan(fields.at(3).temperature));
 	EXPECT_EQ(fields.at(3).contact_stress.norm(), 0);
-	EXPECT_TRUE(std::isnan(fields.at(3, 0).area_fraction));
+	EXPECT_TRUE(std::isnan(fields.at(3, 0).fraction));
 }
 
 // ---- contacts ----
 
 TEST(FieldSums, OneContactByHand)
 {
-	const FieldContact c{ { -0.5, 0 }, { 1, 0 }, { 3, 0.5 } };
-	const FieldGrid point{ { -0.5, -0.5 }, 1, 1, 1 };  // its middle is the contact
-	const auto stress = [&](const FieldKernel& kernel) {
+	const FieldContact<2> c{ { -0.5, 0 }, { 1, 0 }, { 3, 0.5 } };
+	const FieldGrid<2> point{ { -0.5, -0.5 }, 1, 1, 1 };  // its middle is the contact
+	const auto stress = [&](const FieldKernel<2>& kernel) {
 		Fields fields({ point, kernel, { 0, 0 }, true });
 		fields.add(c);
 		return fields.at(0).contact_stress;
@@ -178,10 +182,10 @@ TEST(FieldSums, OneContactByHand)
 		EXPECT_EQ(got(0, 1), 0);
 		EXPECT_EQ(got(1, 1), 0);
 	};
-	expect(stress(SphereKernel{ 2 }), 1 / (4 * pi));
-	expect(stress(SphereKernel{ 0.25 }), 0.5 / (pi / 16));  // half of the line
+	expect(stress(SphereKernel<2>{ 2 }), 1 / (4 * pi));
+	expect(stress(SphereKernel<2>{ 0.25 }), 0.5 / (pi / 16));  // half of the line
 	expect(stress(DiskBinKernel{}), 1);
-	expect(stress(GaussianKernel{ 1, 3 }), std::sqrt(pi) * std::erf(0.5) / pi / (1 - std::exp(-9)));
+	expect(stress(GaussianKernel<2>{ 1, 3 }), std::sqrt(pi) * std::erf(0.5) / pi / (1 - std::exp(-9)));
 }
 
 TEST(FieldSums, SquareLatticeUnderUniformLoad)
@@ -189,20 +193,20 @@ TEST(FieldSums, SquareLatticeUnderUniformLoad)
 	// Forces F_x and F_y through every contact of a lattice of spacing s: sigma_xx = F_x/s, sigma_yy = F_y/s at every point.
 	const Real s = 0.98, f_x = 2, f_y = 5;
 	const int n = 10;
-	for (const FieldKernel& kernel : kernels) {
-		const bool smooth = std::holds_alternative<GaussianKernel>(kernel);
+	for (const FieldKernel<2>& kernel : kernels) {
+		const bool smooth = std::holds_alternative<GaussianKernel<2>>(kernel);
 		Fields fields(box(kernel, n * s, smooth ? 13 : n));
 		for (int i = 0; i < n; ++i)
 			for (int j = 0; j < n; ++j) {
 				const Vector2r at(s * (i + 0.21), s * (j - 0.4));
-				fields.add(FieldContact{ at, { s, 0 }, { f_x, 0 } });
-				fields.add(FieldContact{ at, { 0, s }, { 0, f_y } });
+				fields.add(FieldContact<2>{ at, { s, 0 }, { f_x, 0 } });
+				fields.add(FieldContact<2>{ at, { 0, s }, { 0, f_y } });
 			}
-		if (std::holds_alternative<SphereKernel>(kernel)) {  // counts what lies inside a circle: right in the mean over places
+		if (std::holds_alternative<SphereKernel<2>>(kernel)) {  // counts what lies inside a circle: right in the mean over places
 			Fields fine(box(kernel, n * s, 20 * n));
 			for (int i = 0; i < n; ++i)
-				for (int j = 0; j < n; ++j) fine.add(FieldContact{ { s * (i + 0.21), s * (j - 0.4) }, { 0, s }, { 0, f_y } });
-			const Real mean = fine.sum([](const FieldMeans& m) { return m.contact_stress(1, 1); }) / (400 * n * n);
+				for (int j = 0; j < n; ++j) fine.add(FieldContact<2>{ { s * (i + 0.21), s * (j - 0.4) }, { 0, s }, { 0, f_y } });
+			const Real mean = fine.sum([](const FieldMeans<2>& m) { return m.contact_stress(1, 1); }) / (400 * n * n);
 			EXPECT_NEAR(mean, f_y / s, 1e-3 * f_y / s);
 			continue;
 		}
@@ -220,16 +224,16 @@ TEST(FieldSums, HydrostaticBedCarriesTheWeightAbove)
 	// Columns of disks under gravity, pressed sideways as strongly as from above: P is the weight above over the width.
 	const int width = 12, height = 30;
 	const Real weight = 0.7;
-	const FieldPlan plan{ FieldGrid{ { 0, 4 }, 0.5, 24, 40 }, GaussianKernel{ 1, 3 }, { Real(width), 0 }, true };
+	const FieldPlan<2> plan{ FieldGrid<2>{ { 0, 4 }, 0.5, 24, 40 }, GaussianKernel<2>{ 1, 3 }, { Real(width), 0 }, true };
 	Fields fields(plan);
 	for (int i = 0; i < width; ++i)
 		for (int j = 0; j < height; ++j) {
 			const Real above = weight * (height - 1 - j);  // carried by the contact over disk j
-			fields.add(FieldContact{ { i + 0.5, j + 0.5 }, { 0, 1 }, { 0, above } });
-			fields.add(FieldContact{ { i + 0.5, j + 0.5 }, { 1, 0 }, { above + weight / 2, 0 } });
+			fields.add(FieldContact<2>{ { i + 0.5, j + 0.5 }, { 0, 1 }, { 0, above } });
+			fields.add(FieldContact<2>{ { i + 0.5, j + 0.5 }, { 1, 0 }, { above + weight / 2, 0 } });
 		}
 	for (int p = 0; p < plan.grid.size(); ++p) {
-		const Real depth = height - plan.grid.centre(p % 24, p / 24)[1];
+		const Real depth = height - plan.grid.centre(plan.grid.place(p))[1];
 		const Real pressure = fields.at(p).contact_stress.trace() / 2;
 		EXPECT_NEAR(pressure, weight * depth, 0.005 * weight * depth) << "depth " << depth;
 	}
@@ -237,12 +241,12 @@ TEST(FieldSums, HydrostaticBedCarriesTheWeightAbove)
 
 TEST(FieldSums, ContactsAcrossThePeriodicSideCountWhole)
 {
-	for (const FieldKernel& kernel : kernels) {
+	for (const FieldKernel<2>& kernel : kernels) {
 		Fields beside(box(kernel, 10, 50)), across(box(kernel, 10, 50));
-		beside.add(FieldContact{ { 0.1, 0.3 }, { 0.8, 0.4 }, { 1, 2 } });
-		across.add(FieldContact{ { 0.1 + 4.6 - 20, 0.3 - 5.2 }, { 0.8, 0.4 }, { 1, 2 } });  // the same place in the bins
+		beside.add(FieldContact<2>{ { 0.1, 0.3 }, { 0.8, 0.4 }, { 1, 2 } });
+		across.add(FieldContact<2>{ { 0.1 + 4.6 - 20, 0.3 - 5.2 }, { 0.8, 0.4 }, { 1, 2 } });  // the same place in the bins
 		const auto total = [](const Fields& f) {
-			return f.sum([](const FieldMeans& m) -> Eigen::Matrix<Real, 2, 2> { return m.contact_stress; });
+			return f.sum([](const FieldMeans<2>& m) -> Eigen::Matrix<Real, 2, 2> { return m.contact_stress; });
 		};
 		EXPECT_NEAR((total(beside) - total(across)).norm(), 0, 1e-10 * total(beside).norm());
 		EXPECT_GT(total(beside).norm(), 0);
