@@ -11,7 +11,17 @@ const char* const ContactForceBinner::documentation =
 	"slipping contacts, force vector [N]; for the whole body: force, torque, contacts. Each with mean and variance over the\n"
 	"samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64 points, 8 degrees\n"
 	"(Guillard, Forterre, Pouliquen 2014, Eq. A4). The bins' forces sum to the total force to round-off. A clump's contacts are\n"
-	"its members'. Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over "
+	"its members'.\n\n"
+	"In three dimensions planeNormal is the axis of the angle, that of a cylinder, and counter-clockwise is about it: for the "
+	"angle\n"
+	"from x up to z take planeNormal=(0, -1, 0). Levers and forces are projected on the plane across the axis: an angle is that "
+	"of\n"
+	"the contact point about the axis, wherever along it; a normal force counts with its part in the plane, a tangential force\n"
+	"with its part in the plane and across the normal. What a force has along the axis is in axialForce, and forceVectors hold "
+	"all\n"
+	"of it: normal and tangential stress of a cylinder of radius R and length L (Guillard et al.) are normalForce and\n"
+	"tangentialForce over 2 pi R L/bins. A contact on the axis itself has no angle and counts at 0.\n\n"
+	"Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over "
 	"all\n"
 	"samples, empty ones included. Raises ValueError for a count, width or interval out of range.";
 
@@ -60,15 +70,35 @@ Vector3r ContactForceBinner::zero_direction()
 	return last_direction_;
 }
 
+namespace {
+
+/// A contact's forces in the plane across an axis; in a scene of disks they lie there already, and nothing changes, not even a bit.
+struct InPlane {
+	Vector3r normal, tangential;
+
+	InPlane(const BodyContact& contact, const Vector3r& axis)
+		: normal(across(contact.normal_force, axis)),
+		  tangential(across(contact.tangential_force, axis))
+	{
+		// The tangent plane of a normal that leans towards the axis holds directions whose shadows are not across the normal's.
+		if (contact.normal_force.dot(axis) != 0 && !normal.isZero(0)) tangential = across(tangential, normal.normalized());
+	}
+
+private:
+	static Vector3r across(const Vector3r& v, const Vector3r& direction) { return v - v.dot(direction) * direction; }
+};
+
+}  // namespace
+
 void ContactForceBinner::add(const BodyContact& contact, const Vector3r& e1, const Vector3r& e2, const AngularKernel& around)
 {
 	const Real theta = std::atan2(contact.lever.dot(e2), contact.lever.dot(e1));
 	const Vector3r force = contact.normal_force + contact.tangential_force;
+	const InPlane in_plane(contact, planeNormal.normalized());
 	const Vector3r outward = std::cos(theta) * e1 + std::sin(theta) * e2, along = std::cos(theta) * e2 - std::sin(theta) * e1;
 	// Sign from the side that the normal force pushes to; magnitude from the law, whatever the shape's own normal is.
-	const Real inward_force = contact.normal_force.dot(outward) <= 0 ? contact.normal_force.norm() : -contact.normal_force.norm();
-	const Real along_force =
-		contact.tangential_force.dot(along) >= 0 ? contact.tangential_force.norm() : -contact.tangential_force.norm();
+	const Real inward_force = in_plane.normal.dot(outward) <= 0 ? in_plane.normal.norm() : -in_plane.normal.norm();
+	const Real along_force = in_plane.tangential.dot(along) >= 0 ? in_plane.tangential.norm() : -in_plane.tangential.norm();
 	around.shares(theta, shares_);
 	for (const auto& [bin, weight] : shares_) {
 		sample_[slot(normal, bin)] += weight * inward_force;

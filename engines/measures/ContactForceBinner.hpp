@@ -27,7 +27,8 @@ public:
 		visit("width", &Self::width, "standard deviation of the Gaussian [rad]; default 8 degrees");
 		visit("reference", &Self::reference, "angle 0 is along 'direction' ('fixed') or along the body's velocity ('motion')");
 		visit("direction", &Self::direction, "angle 0 with reference='fixed', and before the body moves");
-		visit("planeNormal", &Self::planeNormal, "axis of the angle, counter-clockwise: z in 2D, the cylinder's axis in 3D");
+		visit("planeNormal", &Self::planeNormal,
+			"axis of the angle, counter-clockwise about it: z in 2D, the cylinder's axis in 3D");
 		visit("every", &Self::every, "sample every so many steps");
 		visit("samples", &Self::samples, "number of samples so far");
 		visit("meanData", &Self::meanData, "running means, for save and load");

@@ -37,6 +37,18 @@ np::ndarray force_vectors(const Binner& binner)
 	return as_array(rows, binner.bin_count(), 3);
 }
 
+/// The channels force_x, force_y, force_z along `planeNormal`.
+np::ndarray axial_force(const Binner& binner)
+{
+	const Vector3r axis = binner.planeNormal.normalized();
+	std::vector<Real> along(binner.bin_count(), 0);
+	for (int k = 0; k < 3; ++k) {
+		const auto column = binner.statistic(Binner::force_x + k, false);
+		for (int m = 0; m < binner.bin_count(); ++m) along[m] += axis[k] * column[m];
+	}
+	return as_array(along, binner.bin_count(), 1);
+}
+
 template <int first, bool variance>
 Vector3r of_body(const Binner& binner)
 {
@@ -75,15 +87,17 @@ void bind_measures()
 	auto cls = seam::bind<Binner>(Binner::documentation);
 	cls.def("clear", &Binner::clear, "Forget all samples (at the end of a transient).");
 	cls.add_property("angles", angles, "centres of the bins [rad], shape (bins,), in (-pi, pi)");
-	cls.add_property("normalForce", of_bins<Binner::normal, false>, "mean normal force [N], shape (bins,)");
+	cls.add_property("normalForce", of_bins<Binner::normal, false>,
+		"mean normal force, positive inwards; in 3D its part across planeNormal [N], shape (bins,)");
 	cls.add_property("normalForceVariance", of_bins<Binner::normal, true>, "its variance over samples [N^2], shape (bins,)");
-	cls.add_property(
-		"tangentialForce", of_bins<Binner::tangential, false>, "mean tangential force, counter-clockwise [N], shape (bins,)");
+	cls.add_property("tangentialForce", of_bins<Binner::tangential, false>,
+		"mean tangential force, counter-clockwise; in 3D its part across planeNormal and the normal [N], shape (bins,)");
 	cls.add_property(
 		"tangentialForceVariance", of_bins<Binner::tangential, true>, "its variance over samples [N^2], shape (bins,)");
 	cls.add_property("contacts", of_bins<Binner::contacts, false>, "mean number of contacts, shape (bins,)");
 	cls.add_property("contactsVariance", of_bins<Binner::contacts, true>, "its variance over samples, shape (bins,)");
 	cls.add_property("slippingContacts", of_bins<Binner::slipping, false>, "mean number of slipping contacts, shape (bins,)");
+	cls.add_property("axialForce", axial_force, "mean force along planeNormal, normal and tangential [N], shape (bins,)");
 	cls.add_property("forceVectors", force_vectors<false>, "mean force [N], shape (bins, 3)");
 	cls.add_property("forceVectorsVariance", force_vectors<true>, "its variance over samples [N^2], shape (bins, 3)");
 	cls.add_property("force", of_body<Binner::total_force, false>, "mean force on the body [N]");

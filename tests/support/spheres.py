@@ -7,9 +7,11 @@ from disks import engines, hertz
 from yade import O, utils
 from yade.minieigenHP import Vector3
 from yade.wrapper import (
+    Bo1_Box_Aabb,
     Bo1_Sphere_Aabb,
     Bo1_Wall_Aabb,
     ForceResetter,
+    Ig2_Box_Sphere_ScGeom,
     Ig2_Sphere_Sphere_ScGeom,
     Ig2_Wall_Sphere_ScGeom,
     InsertionSortCollider,
@@ -43,13 +45,13 @@ def clump(offsets, at=(0, 0, 0), radius=0.3):
 
 
 def loop(law=None, friction=0.0, before_newton=(), gravity=(0, 0, 0), damping=0.0):
-    """YADE's loop with one of Graindrive's laws for spheres and walls; drives and measures stand before the integrator."""
+    """YADE's loop with one of Graindrive's laws for spheres, walls and boxes; drives and measures stand before the integrator."""
     contacts = InteractionLoop(
-        [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+        [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()],
         [engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=friction)],
         [law or hertz()],
         label="contacts",
     )
-    collider = InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=0.1)
+    collider = InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb()], verletDist=0.1)
     newton = NewtonIntegrator(damping=damping, gravity=gravity, label="newton")
     O.engines = [ForceResetter(), collider, contacts, *before_newton, newton]
