@@ -1,6 +1,7 @@
-"""Fields of a run folder (area fraction, velocity, temperature, stress on a grid), and their maps and streamlines."""
+"""Fields of a run folder in a plane (area or solid fraction, velocity, temperature, stress), and their maps and streamlines."""
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from .reader import RunError
 
 LABELS = {
     "area_fraction": r"$\Phi$",
+    "solid_fraction": r"$\Phi$",
     "density": r"$\rho$",
     "temperature": r"$T_g$",
     "pressure": r"$P$",
@@ -23,6 +25,8 @@ UNITS = {
     "rho g d": r"$\rho g d$",
     "m^2/s^2": "m$^2$/s$^2$",
     "kg/m^2": "kg/m$^2$",
+    "kg/m^3": "kg/m$^3$",
+    "N/m^2": "N/m$^2$",
 }
 
 
@@ -31,7 +35,9 @@ class Fields:
     """What a FieldAverager saw: `arrays` maps names to arrays (phases, ny, nx), vectors (…, 2), stresses (…, 2, 2).
 
     `x` (nx,) and `y` (ny,) are the middles of the bins from the window's origin, `samples` (phases,) counts frames,
-    `units` maps names to units, `settings` are the averager's (kernel, spacing, width, phases …).
+    `units` maps names to units, `settings` are the averager's (kernel, spacing, width, phases …). Of spheres, averaged along
+    an axis, `axes` names the two that are left: `x` and `y` are then places along these, ny and nx their numbers, and
+    vectors and stresses have three components.
     """
 
     x: np.ndarray
@@ -40,6 +46,7 @@ class Fields:
     arrays: dict
     units: dict
     settings: dict
+    axes: str = "xy"
 
     def map(self, name, phase=None):
         """Return one scalar field as (ny, nx): of a phase, or the mean over phases weighted by their samples.
@@ -54,19 +61,29 @@ class Fields:
     def scalars(self):
         """Return {name: (phases, ny, nx)} of all scalar fields.
 
-        Among them are the speed of the mean velocity, and the contact pressure, half the trace of the contacts' stress.
+        Among them are the speed of the mean velocity, and the contact pressure, the mean of the diagonal of the contacts' stress.
         """
         found = {name: array for name, array in self.arrays.items() if array.ndim == 3}
         if "velocity" in self.arrays:
-            found["speed"] = np.hypot(*np.moveaxis(self.arrays["velocity"], -1, 0))
+            found["speed"] = reduce(np.hypot, np.moveaxis(self.arrays["velocity"], -1, 0))
         if "contact_stress" in self.arrays:
-            found["contact_pressure"] = np.trace(self.arrays["contact_stress"], axis1=-2, axis2=-1) / 2
+            stress = self.arrays["contact_stress"]
+            found["contact_pressure"] = np.trace(stress, axis1=-2, axis2=-1) / stress.shape[-1]
         return found
 
     def velocity(self, phase=None):
-        """Return (v_x, v_y), each (ny, nx): of a phase, or the mean over phases weighted by the grains that were there."""
+        """Return the velocity along `axes`, (v_x, v_y), each (ny, nx).
+
+        Of a phase, or the mean over phases weighted by the grains that were there.
+        """
         components = np.moveaxis(self.arrays["velocity"], -1, 0)
-        return tuple(self.of_phase(component, phase, self.arrays["area_fraction"]) for component in components)
+        weight = self.arrays[self.fraction]
+        return tuple(self.of_phase(components["xyz".index(axis)], phase, weight) for axis in self.axes)
+
+    @property
+    def fraction(self):
+        """Name of the fraction that grains fill: of area, or of volume."""
+        return "solid_fraction" if "solid_fraction" in self.arrays else "area_fraction"
 
     def of_phase(self, array, phase, weight=1.0):
         """Return a phase of (phases, ny, nx), or the mean over phases by samples and `weight`; nan where nothing is."""
@@ -79,12 +96,18 @@ class Fields:
 
 
 def read(run, name):
-    """Return the `Fields` that a run (reader.Run) stored under `fields/NAME`; RunError if there are none."""
+    """Return the `Fields` that a run (reader.Run) stored under `fields/NAME`; RunError if there are none in a plane."""
     arrays, units, settings = run.group(f"fields/{name}"), *run.labels(f"fields/{name}")
-    if not {"x", "y", "samples"} <= arrays.keys():
+    axes = settings.pop("axes", "xy")
+    if not {*axes, "samples"} <= arrays.keys():
         raise RunError(f"{run.path} holds no fields of the name {name}")
-    x, y, samples = (arrays.pop(key) for key in ("x", "y", "samples"))
-    return Fields(x, y, samples, arrays, units, settings)
+    if len(axes) != 2:
+        raise RunError(
+            f"the fields {name} of {run.path} lie on a grid along {axes}; maps and exports show planes: give the averager"
+            " averageAlong, or read run.h5"
+        )
+    x, y, samples = (arrays.pop(key) for key in (*axes, "samples"))
+    return Fields(x, y, samples, arrays, units, settings, axes)
 
 
 def draw_map(axes, fields, name, phase=None, **options):
@@ -98,7 +121,8 @@ def draw_map(axes, fields, name, phase=None, **options):
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.05, aspect=25)
     bar.set_label(labelled(LABELS.get(name, name), fields.units.get("velocity" if name == "speed" else name)))
     bar.ax.minorticks_off()
-    axes.set(aspect="equal", xlabel=labelled("$x$", fields.units["x"]), ylabel=labelled("$y$", fields.units["y"]))
+    across, up = (labelled(f"${axis}$", fields.units[axis]) for axis in fields.axes)
+    axes.set(aspect="equal", xlabel=across, ylabel=up)
     return mesh
 
 
@@ -108,12 +132,12 @@ def labelled(symbol, unit):
 
 
 def draw_streamlines(axes, fields, phase=None, least_fraction=0.02, **options):
-    """Draw lines along the mean velocity; they end where the area fraction is below `least_fraction`.
+    """Draw lines along the mean velocity; they end where the fraction that grains fill is below `least_fraction`.
 
     Wide kernels reach into what holds no grains; velocities there are those of the grains beside it. `options` go to
     streamplot: density, color.
     """
-    empty = ~(fields.map("area_fraction", phase) >= least_fraction)
+    empty = ~(fields.map(fields.fraction, phase) >= least_fraction)
     v_x, v_y = (np.ma.masked_where(empty, component) for component in fields.velocity(phase))
     options = {"color": BLACK, "linewidth": 0.5, "arrowsize": 0.5, "density": 1.2, **options}
     lines = axes.streamplot(fields.x, fields.y, v_x, v_y, **options)

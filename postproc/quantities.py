@@ -162,21 +162,33 @@ QUANTITIES = {
         )
     },
     "fields/NAME": {
-        **of("length", x="middles of the bins from the window's origin, the body's centroid", y="the same"),
-        **of("-", samples="moments averaged, by phase", area_fraction="area of disks over area"),
-        **of("density", density="mass over area"),
-        **of("velocity", velocity="mean velocity (x, y); nan where no grain was"),
         **of(
-            "temperature", temperature="granular temperature, half the mean square of v - <v>; nan where no grain was"
+            "length", x="middles of the bins from the window's origin, the body's centroid", y="the same", z="the same"
+        ),
+        **of(
+            "-",
+            samples="moments averaged, by phase",
+            area_fraction="area of disks over area",
+            solid_fraction="volume of spheres over volume",
+        ),
+        **of("density", density="mass over area; of spheres over volume, kg/m^3"),
+        **of("velocity", velocity="mean velocity (x, y), of spheres (x, y, z); nan where no grain was"),
+        **of(
+            "temperature",
+            temperature="granular temperature, half the mean square of v - <v>, of spheres a third; nan where no grain was",
         ),
         **of(
             "stress",
-            pressure="half the trace of the stress, contacts and motion",
-            contact_stress="stress by contacts, first index the force's, second the branch's; > 0 in compression",
-            kinetic_stress="stress by motion about the mean velocity",
+            pressure="half the trace of the stress, contacts and motion; of spheres a third, N/m^2",
+            contact_stress="stress by contacts, first index the force's, second the branch's; > 0 in compression; of"
+            " spheres N/m^2",
+            kinetic_stress="stress by motion about the mean velocity; of spheres N/m^2",
         ),
         **of(
-            "", kernel="attribute: the averager's kernel", relative="attribute: velocities are relative to the body's"
+            "",
+            kernel="attribute: the averager's kernel",
+            relative="attribute: velocities are relative to the body's",
+            axes="attribute, of spheres: axes that the grid has points along; xz is averaged along y",
         ),
         **of("length", spacing="attribute: of the bins", width="attribute: w of the kernel"),
         **of(

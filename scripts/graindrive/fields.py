@@ -17,6 +17,7 @@ class FieldUnits(NamedTuple):
 
 
 SI, GRAIN = (FieldUnits(*(DIMENSIONS[name][system] for name in FieldUnits._fields)) for system in (0, 1))
+SI_IN_SPACE = SI._replace(density="kg/m^3", stress="N/m^2")
 
 SETTINGS = ("kernel", "spacing", "width", "cutoff", "every", "relative", "phases", "period", "phaseStart")
 
@@ -27,18 +28,22 @@ def check_spacing(spacing):
         raise UsageError(f"field_spacing={spacing:g} d must divide 1 d; take 1/{max(1, round(1 / spacing))}")
 
 
-def write_fields(folder, name, averager, units=SI):
+def write_fields(folder, name, averager, units=None):
     """Store all fields that `averager` has as the group `fields/NAME` of a RunFolder; its settings become attributes.
 
     Datasets: x (nx,), y (ny,), samples (phases,), area_fraction, density, temperature and pressure (phases, ny, nx),
     velocity (phases, ny, nx, 2), contact_stress and kinetic_stress (phases, ny, nx, 2, 2); pressure and stresses only
-    where the averager has them. Velocity and temperature are nan where no grain was.
+    where the averager has them. Velocity and temperature are nan where no grain was. In three dimensions shapes are the
+    averager's, solid_fraction stands for area_fraction, and the attribute `axes` names the grid's axes: `xz` with
+    averageAlong="y". `units` are SI unless given.
     """
-    arrays = dict(
-        x=(averager.x, units.length),
-        y=(averager.y, units.length),
+    in_space = averager.dimensions == 3
+    units = units or (SI_IN_SPACE if in_space else SI)
+    arrays = {axis: (getattr(averager, axis), units.length) for axis in averager.axes}
+    fraction = dict(solid_fraction=averager.solidFraction) if in_space else dict(area_fraction=averager.areaFraction)
+    arrays.update(
         samples=(averager.samples, "-"),
-        area_fraction=(averager.areaFraction, "-"),
+        **{name: (array, "-") for name, array in fraction.items()},
         density=(averager.density, units.density),
         velocity=(averager.velocity, units.velocity),
         temperature=(averager.temperature, units.temperature),
@@ -49,4 +54,5 @@ def write_fields(folder, name, averager, units=SI):
             contact_stress=(averager.contactStress, units.stress),
             kinetic_stress=(averager.kineticStress, units.stress),
         )
-    folder.write(f"fields/{name}", arrays, **{key: getattr(averager, key) for key in SETTINGS})
+    settings = {key: getattr(averager, key) for key in SETTINGS + (("axes",) if in_space else ())}
+    folder.write(f"fields/{name}", arrays, **settings)

@@ -90,6 +90,6 @@ def export_fields(fields, name, folder):
     for phase in range(phases):
         file = f"fields_{name}_{phase + 1:02d}.vti"
         arrays = {field: values[phase] for field, values in fields.arrays.items()}
-        write(image(fields.x, fields.y, arrays, fields.units), Path(folder) / file)
+        write(image(fields.x, fields.y, arrays, fields.units, fields.axes), Path(folder) / file)
         entries.append((start + (phase + 0.5) / phases * period, file))
     write_collection(Path(folder) / f"fields_{name}.pvd", entries)

@@ -45,15 +45,16 @@ def polydata(points, kind, cells, arrays, units=(), *, on_points):
     return data
 
 
-def image(x, y, arrays, units=()):
-    """Return a vtkImageData of the plane z = 0 with values at evenly spaced places x (nx,), y (ny,).
+def image(x, y, arrays, units=(), axes="xy"):
+    """Return a vtkImageData of a plane through the origin with values at evenly spaced places x (nx,), y (ny,) along `axes`.
 
-    `arrays` are (ny, nx), (ny, nx, 2) or (ny, nx, 2, 2); vectors and tensors get zeros along z.
+    `arrays` are (ny, nx), (ny, nx, D) or (ny, nx, D, D); vectors and tensors of D = 2 get zeros along z.
     """
     data = modules()[1].vtkImageData()
     spacing = next((a[1] - a[0] for a in (x, y) if len(a) > 1), 1.0)
-    data.SetDimensions(len(x), len(y), 1)
-    data.SetOrigin(x[0], y[0], 0)
+    places = [dict(zip(axes, (x, y))).get(axis, [0.0]) for axis in "xyz"]
+    data.SetDimensions(*map(len, places))
+    data.SetOrigin(*(along[0] for along in places))
     data.SetSpacing(spacing, spacing, spacing)
     add_arrays(data.GetPointData(), {name: in_space(values) for name, values in arrays.items()}, units)
     return data
@@ -62,7 +63,7 @@ def image(x, y, arrays, units=()):
 def in_space(values):
     """Return values on a grid (ny, nx, …) as rows (n,), (n, 3) or (n, 9), x fastest."""
     order = values.ndim - 2
-    padded = np.pad(values, [(0, 0)] * 2 + [(0, 1)] * order)
+    padded = np.pad(values, [(0, 0)] * 2 + [(0, 3 - size) for size in values.shape[2:]])
     return padded.reshape(-1, 3**order) if order else padded.ravel()
 
 

@@ -6,8 +6,9 @@ import disks
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import spheres
 from graindrive import engines
-from graindrive.fields import GRAIN, SI, write_fields
+from graindrive.fields import GRAIN, SI, SI_IN_SPACE, write_fields
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import fields as results
 from graindrive.postproc.figures import STYLE
@@ -94,4 +95,66 @@ def test_maps_and_streamlines_show_the_fields(run, name):
     turning = middle[:, 0] * along[:, 1] - middle[:, 1] * along[:, 0]
     assert (turning > 0).mean() > 0.95  # counter-clockwise, as the disks
     assert axes.get_xlabel() == {"fine": "$x$  [m]", "smooth": "$x$  [$d$]"}[name]
+    plt.close(figure)
+
+
+# ---- spheres, averaged along an axis ----
+
+
+@pytest.fixture(scope="module")
+def in_space(tmp_path_factory):
+    """Spheres on a ring about y that turn from x up to z and move along y: averaged along y, and on a grid in space."""
+    disks.new_scene(dt=1e-3, period=(8, 4, 8))
+    for angle in 2 * math.pi * np.arange(9) / 9:
+        x, z = 2 * math.cos(angle), 2 * math.sin(angle)
+        for y in (0.5, 2.5):
+            spheres.sphere((x, y, z), velocity=(-2 * z, 0.5, 2 * x))
+    options = dict(dimensions=3, low=(-3, 0, -3), high=(3, 4, 3), width=0.5, cutoff=3)
+    row = engines.FieldAverager(averageAlong="y", spacing=0.2, **options)
+    full = engines.FieldAverager(spacing=0.5, **options)
+    spheres.loop(before_newton=[row, full])
+    disks.run(3)
+    out = tmp_path_factory.mktemp("fields") / "run"
+    with RunFolder(StudyParameters(out=str(out)), study="lift") as folder:
+        write_fields(folder, "row", row)
+        write_fields(folder, "grains", row, GRAIN)
+        write_fields(folder, "full", full)
+    yield row, Run(out)
+    O.reset()
+
+
+def test_fields_of_spheres_come_back_with_their_axes_and_units(in_space):
+    averager, run = in_space
+    found = results.read(run, "row")
+    assert found.axes == "xz" and found.fraction == "solid_fraction"
+    np.testing.assert_array_equal(found.x, averager.x)
+    np.testing.assert_array_equal(found.y, averager.z)
+    assert found.units["density"] == SI_IN_SPACE.density == "kg/m^3" and found.units["pressure"] == "N/m^2"
+    assert results.read(run, "grains").units["pressure"] == "rho g d"
+    np.testing.assert_array_equal(found.arrays["contact_stress"], averager.contactStress)
+    fraction = found.map("solid_fraction")
+    # The cut at 3 w leaves a step of exp(-9) of the peak.
+    assert fraction.sum() * 0.2**2 * 4 == pytest.approx(18 * math.pi / 6, rel=1e-3)
+    v_x, v_z = found.velocity()
+    np.testing.assert_allclose(v_z, averager.velocity[0, ..., 2], rtol=4 * disks.EPS)  # times a weight, and over it
+    np.testing.assert_allclose(found.map("speed"), np.linalg.norm(averager.velocity[0], axis=-1), rtol=1e-14)
+    assert found.map("contact_pressure").shape == (30, 30)
+
+
+def test_a_grid_in_space_is_refused_where_planes_are_drawn(in_space):
+    with pytest.raises(RunError, match="the fields full of .* lie on a grid along xyz; maps and exports show planes"):
+        results.read(in_space[1], "full")
+
+
+def test_maps_and_streamlines_of_spheres_have_their_axes(in_space):
+    fields = results.read(in_space[1], "row")
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots()
+        results.draw_map(axes, fields, "speed")
+        lines = results.draw_streamlines(axes, fields)
+        figure.canvas.draw()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("$x$  [m]", "$z$  [m]")
+    segments = np.array(lines.lines.get_segments())
+    middle, along = segments.mean(axis=1), segments[:, 1] - segments[:, 0]
+    assert ((middle[:, 0] * along[:, 1] - middle[:, 1] * along[:, 0]) > 0).mean() > 0.9  # from x up to z
     plt.close(figure)

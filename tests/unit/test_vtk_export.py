@@ -143,6 +143,21 @@ def test_fields_come_back_as_images_with_units(tmp_path):
     assert [float(s.get("timestep")) for s in sets] == [2.0, 4.0]  # the middles of the halves of a cycle of 4 from 1 on
 
 
+def test_fields_averaged_along_y_lie_in_the_plane_of_x_and_z(tmp_path):
+    x, z, rng = np.array([-1.0, -0.5, 0.0]), np.array([2.0, 2.5]), np.random.default_rng(1)
+    shapes = dict(pressure=(1, 2, 3), velocity=(1, 2, 3, 3), contact_stress=(1, 2, 3, 3, 3))
+    arrays = {name: rng.uniform(size=shape) for name, shape in shapes.items()}
+    export_fields(Fields(x, z, np.array([5]), arrays, {}, {}, "xz"), "row", tmp_path)
+    data, to_numpy = read(tmp_path / "fields_row_01.vti")
+    found = arrays_of(data.GetPointData(), to_numpy)
+    assert data.GetNumberOfPoints() == 6
+    for k in range(6):
+        row, column = k // 3, k % 3
+        assert data.GetPoint(k) == (x[column], 0, z[row])
+        for name, shape in (("pressure", ()), ("velocity", (3,)), ("contact_stress", (3, 3))):
+            assert np.array_equal(found[name][0][k].reshape(shape), arrays[name][0, row, column])
+
+
 @pytest.mark.parametrize("order", ["import yade, vtkmodules.vtkIOXML", "import vtkmodules.vtkIOXML, yade"])
 def test_lives_beside_yade(tmp_path, order):
     pytest.importorskip("yade")
