@@ -205,11 +205,17 @@ FieldAverager::Frame FieldAverager::frame()
 void FieldAverager::leave_out_what_is_no_grain()
 {
 	constexpr unsigned out_of_plane = yade::State::DOF_Z | yade::State::DOF_RX | yade::State::DOF_RY;
+	bool disks = false, spheres = false;
 	for (GrainState& grain : view_.grains) {
 		if (grain.id == body) grain.free = false;
-		if (dimensions == 3 && grain.free)
-			grain.free = !(body_of(*scene, grain.id, class_name).state->blockedDOFs & out_of_plane);
+		if (dimensions == 2 || !grain.free) continue;
+		grain.free = !(body_of(*scene, grain.id, class_name).state->blockedDOFs & out_of_plane);
+		(grain.free ? spheres : disks) = true;
 	}
+	if (disks && !spheres)
+		throw std::runtime_error("FieldAverager.dimensions=3 reads spheres that are free in all six degrees of freedom, but "
+								 "every grain of this scene is "
+								 "blocked along z or about x or y; set dimensions=2 for disks");
 }
 
 /// Areas of spheres at different heights would be added up without a word.

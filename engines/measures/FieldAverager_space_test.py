@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from disks import engine, engines, hertz, new_scene, run
+from disks import disk, engine, engines, hertz, new_scene, run
 from spheres import clump, frozen, loop, sphere
 from yade import O, utils
 
@@ -298,4 +298,13 @@ def test_fields_of_the_plane_refuse_spheres_at_several_heights():
     sphere((1, 0, 0.7))
     loop(before_newton=[engines.FieldAverager()])
     with pytest.raises(RuntimeError, match="grains 0 and 1 differ in z by more than a radius; set dimensions=3"):
+        O.step()
+
+
+def test_fields_of_space_refuse_a_scene_of_disks():
+    disk(0, 0)
+    loop(before_newton=[averager()])
+    with pytest.raises(
+        RuntimeError, match="every grain of this scene is blocked along z or about x or y; set dimensions=2"
+    ):
         O.step()
