@@ -297,6 +297,16 @@ def test_a_sphere_touches_a_sampled_torus_where_the_closed_form_says():
     np.testing.assert_allclose([i.geom.penetrationDepth for i in made], 0.1 * R, rtol=0, atol=spacing**3 / 0.03**2)
 
 
+def test_spheres_larger_than_the_margin_of_a_sampled_solid_are_refused():
+    sampled = surfaces.sampled(torus, (-0.14, -0.14, -0.04), (0.14, 0.14, 0.04), 0.004)
+    add_solid(sampled.placed((0, 0, 1)) | FLOOR)
+    add_sphere((0, 0, R), radius=0.0099)
+    loop()
+    O.run(2, True)
+    add_sphere((0, 0.5, R), radius=0.0101)
+    refused(ValueError, "spheres of radii up to 0.01, the distance that its grid keeps around it, got 0.0101 of body 2")
+
+
 @pytest.mark.parametrize("ending", ["yade", "yade.gz", "xml", "xml.bz2"])
 def test_a_saved_scene_goes_on_to_the_last_bit(ending, tmp_path):
     shape = surfaces.half_space((0, 0, -0.1), (0, 0.1, 1)) | surfaces.swept_outline(

@@ -69,6 +69,23 @@ void for_each_solid(const yade::Scene& scene, Visit&& visit)
 	}
 }
 
+/// A sampled distance is a bound from below beyond its grid: a sphere larger than the grid's margin would touch nothing there.
+void require_small_spheres(const yade::Scene& scene, const yade::Body& solid)
+{
+	const double largest = static_cast<const Solid&>(*solid.shape).surface()->largest_sphere();
+	if (std::isinf(largest)) return;
+	for (std::size_t id = 0; id < scene.bodies->size(); ++id) {
+		if (!scene.bodies->exists(int(id))) continue;
+		const auto* sphere = dynamic_cast<const yade::Sphere*>((*scene.bodies)[id]->shape.get());
+		if (!sphere || sphere->radius <= largest) continue;
+		std::ostringstream message;
+		message << named(solid, "is sampled for spheres of radii up to ") << largest
+				<< ", the distance that its grid keeps around it, got " << sphere->radius << " of body " << id
+				<< "; sample it in a wider box";
+		throw std::invalid_argument(message.str());
+	}
+}
+
 void require_perpendicular_cell(const yade::Scene& scene)
 {
 	const auto& edges = scene.cell->hSize;
@@ -87,6 +104,7 @@ void check_solids(const yade::Scene& scene)
 	for_each_solid(scene, [&](const yade::Body& body) {
 		if (scene.isPeriodic) require_perpendicular_cell(scene);
 		require_usable(scene, body);
+		require_small_spheres(scene, body);
 	});
 }
 

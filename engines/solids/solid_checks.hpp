@@ -9,7 +9,7 @@
 
 namespace graindrive {
 
-/// @throws std::invalid_argument for a Solid without a surface; and, where YADE's collider works in a periodic cell, for a sheared
+/// @throws std::invalid_argument for a Solid without a surface; for a sampled one and spheres larger than its margin; and, where YADE's collider works in a periodic cell, for a sheared
 /// cell and for a Solid that is longer than half of it along an axis but does not go on without end
 void check_solids(const yade::Scene& scene);
 

@@ -66,9 +66,8 @@ def sampled(function, low, high, spacing):
     function: takes the nodes, an array of shape (n, 3) [m], in one call and gives n signed distances [m], > 0 outside
     the solid. The surface interpolates them (Keys 1981): with radii of curvature R the error is of the order
     spacing^3/R^2, at edges spacing.
-    The solid must lie within the grid. Beyond the grid the distance is taken for the way to it plus `margin`, the
-    least distance in the grid's outer nodes: let low and high leave the radius of the largest sphere around the
-    solid.
+    The solid must lie within the grid, and the grid reach beyond it by the radius of the largest sphere: farther out the
+    distance is only known to be more. Spheres larger than the least distance in the grid's outer nodes are refused.
     For a hollow, such as a vessel's inside, sample what is hollow and take ~.
 
     Raises ValueError for values of another shape, that are not finite, for a solid that reaches the grid's sides, and
