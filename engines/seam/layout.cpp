@@ -224,6 +224,7 @@ private:
 		size<yade::IGeomFunctor>("IGeomFunctor");
 #ifndef GRAINDRIVE_YADE_HEADERS
 		static_assert(offsetof(yade::Sphere, radius) == sizeof(yade::Shape));
+		static_assert(offsetof(yade::State, ori) - offsetof(yade::State, pos) == offsetof(yade::Se3r, orientation));
 #endif
 	}
 

@@ -189,10 +189,10 @@ public:
 	std::map<int, Place> members;
 };
 
-/// Place and orientation, as functors of bounds are given them.
+/// Place and orientation, as functors of bounds are given them: the first members of State, where no alignment parts them.
 struct Se3r {
 	Vector3r position;
-	Quaternionr orientation;
+	Eigen::Quaternion<Real, Eigen::DontAlign> orientation;
 };
 
 /// Position, velocity and inertia of a body.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from graindrive import engines, surfaces
 from scipy.integrate import solve_ivp
-from yade import O
+from yade import O, Quaternion
 from yade.utils import sphere
 from yade.wrapper import (
     Body,
@@ -159,6 +159,23 @@ def test_the_reduced_mass_is_that_of_the_pair_if_the_solid_can_recoil(free, bloc
     loop()
     O.step()
     assert contact().phys.effectiveMass == pytest.approx(expected * MASS, rel=8 * EPS)
+
+
+def test_a_solid_may_be_a_member_of_a_clump():
+    tip = surfaces.body(
+        surfaces.ball((0, 0, 0), 0.02), position=(0.1, 0, 0), mass=0.02, inertia=(1e-5,) * 3, held=False
+    )
+    clump, (member, _) = O.bodies.appendClumped([tip, sphere((0, 0, 0), 0.02)])
+    ball = add_sphere((0.1, 0, 0.02 + R - 1e-4))
+    whole = O.bodies[clump].state
+    loop()
+    O.step()
+    made = contact()
+    assert (made.id1, made.id2) == (member, ball.id)
+    assert made.phys.effectiveMass == pytest.approx(MASS * whole.mass / (MASS + whole.mass), rel=8 * EPS)
+    force = np.array(made.phys.normalForce)  # on the ball
+    np.testing.assert_allclose(whole.mass * np.array(whole.vel), -force * O.dt, rtol=1e-12, atol=1e-20)
+    assert whole.angVel[1] > 0  # pressed down beyond its centre
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.8])
@@ -386,6 +403,18 @@ def test_bounds_hold_a_solid_however_it_turns():
     assert floor.bound.max[2] == pytest.approx(0, abs=1e-12) and floor.bound.max[0] == 1e100 == -floor.bound.min[2]
 
 
+def test_bounds_turn_with_a_held_solid():
+    held = add_solid(surfaces.cylinder((0, 0, 0), (1, 0, 0), 0.1, 2).placed((1, 0, 0)), position=(3, 4, 5))
+    held.state.ori = Quaternion((0.6, 0, 0.8), 0.7)
+    loop()
+    O.engines[1].verletDist = 0
+    O.step()
+    turn = np.array(held.state.ori.toRotationMatrix())
+    middle, half = turn @ (1, 0, 0), np.abs(turn) @ (1, 0.1, 0.1)
+    np.testing.assert_allclose(held.bound.min, np.array((3, 4, 5)) + middle - half, atol=1e-12)
+    np.testing.assert_allclose(held.bound.max, np.array((3, 4, 5)) + middle + half, atol=1e-12)
+
+
 def test_endless_solids_fit_a_periodic_cell_and_short_ones_have_images():
     rng = np.random.default_rng(2)
     for surface, place in (
@@ -529,7 +558,9 @@ def test_a_drive_measures_the_wrench_on_a_solid():
 
 
 def test_a_free_solid_needs_mass_and_inertia():
-    with pytest.raises(ValueError, match="needs mass and inertia > 0, got 0.0 and None; give them or held=True"):
+    with pytest.raises(
+        ValueError, match="needs mass and inertia > 0 and finite, got 0.0 and \\(0, 0, 0\\); give them or"
+    ):
         surfaces.body(FLOOR, held=False)
     assert isinstance(surfaces.body(FLOOR), Body)
     with pytest.raises(ValueError, match="solidRadius must be a number >= 1, got 0.5"):

@@ -65,7 +65,9 @@ using ReadSurface = SharedSurface<3> (*)(RecipeReader&);
 
 /// Gives a kind of surface a name in recipes. For a class of one's own, in a source of the module:
 ///
-///   static const bool known = add_kind("torus", [](RecipeReader& r) -> SharedSurface<3> { return shared(Torus{ r.number("ring"), r.number("thickness") }); });
+///   static const bool known = add_kind("torus", [](RecipeReader& r) -> SharedSurface<3> {
+///       return shared(Torus{ r.number("ring"), r.number("thickness") });
+///   });
 ///
 /// (in braces the numbers are read in the order in which they stand).
 /// @throws std::invalid_argument for a name that there is, or one that is no word

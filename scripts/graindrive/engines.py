@@ -32,3 +32,5 @@ from ._engines import prove_layout  # noqa: E402, F401
 interaction_helpers.install()
 pausing.watch()
 solid_errors.watch()
+
+from . import surfaces  # noqa: E402, F401  (gives Surface its operators)

@@ -106,9 +106,11 @@ def body(
     """
     from yade import Body, O, Quaternion
 
-    free_and_light = not held and not (mass > 0 and inertia is not None and min(inertia) > 0)
-    if free_and_light:
-        raise ValueError(f"a free solid needs mass and inertia > 0, got {mass} and {inertia}; give them or held=True")
+    inertia = (0, 0, 0) if inertia is None else tuple(_vector("inertia", inertia))
+    if not held and not (0 < mass < math.inf and 0 < min(inertia) <= max(inertia) < math.inf):
+        raise ValueError(
+            f"a free solid needs mass and inertia > 0 and finite, got {mass} and {inertia}; give them or held=True"
+        )
     made = Body()
     made.shape = Solid(surface)
     made.shape.color = color
@@ -117,7 +119,7 @@ def body(
     if orientation is not None:
         made.state.ori = made.state.refOri = Quaternion(orientation)
     made.state.mass = mass
-    made.state.inertia = inertia if inertia is not None else (0, 0, 0)
+    made.state.inertia = inertia
     made.state.blockedDOFs = "xyzXYZ" if held else ""
     made.aspherical = not held and len(set(inertia)) > 1
     return made
@@ -154,6 +156,7 @@ def _placed(self, at=(0, 0, 0), axis=(0, 0, 1), angle=0.0):
 
 Surface.__or__, Surface.__and__, Surface.__invert__, Surface.__sub__ = _or, _and, _not, _minus
 Surface.placed = _placed
+_placed.__name__, _placed.__qualname__ = "placed", "Surface.placed"
 
 
 def _joined(kind, a, b):
