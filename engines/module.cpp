@@ -8,6 +8,7 @@ void bind_bulk();
 void bind_clumps();
 void bind_shapes();
 void bind_packing();
+void bind_solids();
 void bind_functors();
 void bind_drives();
 void bind_measures();
@@ -24,6 +25,7 @@ static void register_everything()
 	graindrive::bind_clumps();
 	graindrive::bind_shapes();
 	graindrive::bind_packing();
+	graindrive::bind_solids();
 	graindrive::bind_functors();
 	graindrive::bind_drives();
 	graindrive::bind_measures();

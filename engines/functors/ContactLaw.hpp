@@ -1,16 +1,9 @@
 /// A pure contact law as a `Law2_` functor of YADE's InteractionLoop.
 #pragma once
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
-#include "engines/laws/sphere_pair.hpp"
+#include "engines/functors/pair_geometry.hpp"
 
 namespace graindrive {
-
-/// Where two disks or spheres touch.
-struct PairGeometry {
-	Vector3r normal;        ///< from body 1 to body 2
-	Real overlap;           ///< [m]
-	Real radius1, radius2;  ///< [m]
-};
 
 /// Base of the functors, one for each law: reads the pair from YADE, asks the law, and gives YADE the forces. Its attributes are what
 /// the law is given of the grains' material.
@@ -49,7 +42,8 @@ public:
 		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
 		if (!phys) {  // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
 			const Real friction = static_cast<const yade::FrictPhys&>(*iphys).tangensOfFrictionAngle;
-			const auto made = contact_phys_of(*this->scene, geom.refR1, geom.refR2, id1, id2, friction);
+			const Real radius = pair_geometry(*this->scene, geom, id1).effective_radius();
+			const auto made = contact_phys_of(*this->scene, radius, id1, id2, friction);
 			iphys = made;
 			phys = made.get();
 		}
@@ -64,9 +58,14 @@ public:
 	{
 		const yade::State& s1 = *(*scene.bodies)[id1]->state;
 		const yade::State& s2 = *(*scene.bodies)[id2]->state;
-		const laws::SpherePair contact{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
-			s2.angVel, phys.effectiveRadius, phys.effectiveMass };
-		return laws::respond(Law::of(*this, phys.tangensOfFrictionAngle), contact, phys.slip, scene.dt, arm());
+		const auto respond = [&](const auto& contact) {
+			return laws::respond(Law::of(*this, phys.tangensOfFrictionAngle), contact, phys.slip, scene.dt, arm());
+		};
+		if (pair.solid)
+			return respond(laws::SolidAndSphere{ pair.normal, pair.overlap, pair.radius2, pair.contact_point - s1.pos, s1.vel,
+				s2.vel, s1.angVel, s2.angVel, phys.effectiveMass });
+		return respond(laws::SpherePair{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
+			s2.angVel, phys.effectiveRadius, phys.effectiveMass });
 	}
 
 private:
@@ -75,8 +74,7 @@ private:
 	void apply(const yade::ScGeom& geom, ContactPhys& phys, int id1, int id2) const
 	{
 		yade::Scene& scene = *this->scene;
-		const PairGeometry pair{ geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2 };
-		const auto answer = this->answer(scene, pair, phys, id1, id2);
+		const auto answer = this->answer(scene, pair_geometry(scene, geom, id1), phys, id1, id2);
 		phys.normalForce = answer.normal_force2;
 		phys.shearForce = answer.tangential_force2;
 		phys.slip = answer.slip;

@@ -1,7 +1,8 @@
 /// Makes a contact's reduced radius, reduced mass and friction from its two bodies.
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 
-#include "engines/laws/pair_geometry.hpp"
+#include "engines/functors/pair_geometry.hpp"
+#include "engines/solids/Solid.hpp"
 
 namespace graindrive {
 
@@ -9,24 +10,35 @@ const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation =
 	"Makes the ContactPhys of a new contact: reduced radius and mass of the pair, friction coefficient.\n\n"
 	"A clump's member counts with the mass of its clump. A body at rest with every degree of freedom blocked (walls, bases) "
 	"counts\n"
-	"as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms.";
+	"as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms. So does a "
+	"Solid\n"
+	"whose three translations are blocked, whether it moves or not, and one without a mass. The reduced radius of a sphere and "
+	"a\n"
+	"Solid is the sphere's own.";
 
-/// 1/m [1/kg]; 0 for a frozen body.
+/// A driven solid has no mass that could recoil, however it moves.
+static bool is_held(const yade::Body& body)
+{
+	const yade::State& state = *body.state;
+	constexpr unsigned translations = yade::State::DOF_X | yade::State::DOF_Y | yade::State::DOF_Z;
+	if (is_solid(body.shape.get())) return (state.blockedDOFs & translations) == translations;
+	return state.blockedDOFs == yade::State::DOF_ALL && state.vel.isZero(0) && state.angVel.isZero(0);
+}
+
+/// 1/m [1/kg]; 0 for a held body.
 static Real inverse_mass(const yade::Scene& scene, int id)
 {
 	const yade::Body* body = (*scene.bodies)[id].get();
 	if (body->isClumpMember()) body = (*scene.bodies)[body->clumpId].get();
-	const yade::State& state = *body->state;
-	const bool frozen = state.blockedDOFs == yade::State::DOF_ALL && state.vel.isZero(0) && state.angVel.isZero(0);
-	return frozen || !(state.mass > 0) ? 0 : 1 / state.mass;
+	const Real mass = body->state->mass;
+	return is_held(*body) || !(mass > 0) ? 0 : 1 / mass;
 }
 
-yade::shared_ptr<ContactPhys> contact_phys_of(
-	const yade::Scene& scene, Real radius1, Real radius2, int id1, int id2, Real friction)
+yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, Real effective_radius, int id1, int id2, Real friction)
 {
 	auto phys = boost::make_shared<ContactPhys>();
 	const Real inverse = inverse_mass(scene, id1) + inverse_mass(scene, id2);
-	phys->effectiveRadius = laws::effective_radius(radius1, radius2);
+	phys->effectiveRadius = effective_radius;
 	phys->effectiveMass = laws::effective_mass(inverse);
 	phys->tangensOfFrictionAngle = friction;
 	return phys;
@@ -45,9 +57,12 @@ void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material
 {
 	if (interaction->phys) return;
 	const auto* geom = dynamic_cast<const yade::ScGeom*>(interaction->geom.get());
-	if (!geom) throw std::invalid_argument(std::string(class_name) + " needs a ScGeom; use Ig2_Sphere_Sphere_ScGeom");
-	interaction->phys = contact_phys_of(
-		*scene, geom->refR1, geom->refR2, interaction->getId1(), interaction->getId2(), friction_between(*first, *second));
+	if (!geom)
+		throw std::invalid_argument(
+			std::string(class_name) + " needs a ScGeom; use Ig2_Sphere_Sphere_ScGeom and Ig2_Solid_Sphere_ScGeom");
+	const int id1 = interaction->getId1(), id2 = interaction->getId2();
+	const Real radius = pair_geometry(*scene, *geom, id1).effective_radius();
+	interaction->phys = contact_phys_of(*scene, radius, id1, id2, friction_between(*first, *second));
 }
 
 }  // namespace graindrive

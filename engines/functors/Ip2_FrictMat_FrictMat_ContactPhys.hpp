@@ -4,9 +4,8 @@
 
 namespace graindrive {
 
-/// The pair's reduced radius and mass, and its friction coefficient.
-yade::shared_ptr<ContactPhys> contact_phys_of(
-	const yade::Scene& scene, Real radius1, Real radius2, int id1, int id2, Real friction);
+/// What the contact of two bodies carries: the pair's reduced radius [m], which is given, its reduced mass and its friction coefficient.
+yade::shared_ptr<ContactPhys> contact_phys_of(const yade::Scene& scene, Real effective_radius, int id1, int id2, Real friction);
 
 class Ip2_FrictMat_FrictMat_ContactPhys : public Registered<Ip2_FrictMat_FrictMat_ContactPhys, yade::IPhysFunctor> {
 public:

@@ -105,11 +105,11 @@ std::optional<PresentContact> contact_of(const yade::Scene& scene, std::pair<int
 	if (!(overlap >= 0) || (one.isClumpMember() && one.clumpId == two.clumpId)) return {};
 	const auto* carried = known ? dynamic_cast<const ContactPhys*>(known->phys.get()) : nullptr;
 	const auto made = carried ? nullptr
-	                          : contact_phys_of(scene, radius_of(one), radius_of(two), id1, id2,
+	                          : contact_phys_of(scene, laws::effective_radius(radius_of(one), radius_of(two)), id1, id2,
 									contact_maker.friction_between(*one.material, *two.material));
 	const ContactPhys& phys = carried ? *carried : *made;
 	if (phys.effectiveMass == 0) return {};
-	const PairGeometry pair{ normal, overlap, radius_of(one), radius_of(two) };
+	const PairGeometry pair{ normal, overlap, radius_of(one), radius_of(two), false, {} };
 	return PresentContact{ id1, id2, pair.normal, overlap, answer(pair, phys, id1, id2) };
 }
 

@@ -72,6 +72,7 @@ public:
 	}
 	Nearest<D> nearest(const Vec<D>& at) const override { return motion_.nearest(*shape_, at); }
 	Bounds<D> bounds() const override { return motion_.bounds(shape_->bounds()); }
+	double largest_sphere() const override { return shape_->largest_sphere(); }
 
 private:
 	SharedSurface<D> shape_;

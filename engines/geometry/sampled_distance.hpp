@@ -66,6 +66,7 @@ public:
 
 	/// The least distance in the grid's outer layer [m]; <= 0 where the solid reaches it.
 	double margin() const { return margin_; }
+	double largest_sphere() const override { return margin_ > 0 ? margin_ : Bounds<D>::infinity; }  // without it none is answered
 
 private:
 	/// Four nodes along an axis and what they count for at a point between the middle two; slopes per spacing.

@@ -113,6 +113,7 @@ TEST(SampledDistance, BesideTheGridIsABoundIfTheSolidLiesWithin)
 	const Ball<3> ball({}, 0.6);
 	const SampledDistance<3> sampled(grid_about<3>({}, 1, 21), distance_to(ball));
 	EXPECT_NEAR(sampled.margin(), 0.4, 0.01);
+	EXPECT_EQ(sampled.largest_sphere(), sampled.margin());
 	RandomPoints<3> random(3);
 	for (int i = 0; i < 1000; ++i) {
 		const Vec<3> at = random();

@@ -18,6 +18,15 @@
 
 namespace graindrive::geometry {
 
+/// The radius of spheres that every part answers rightly. What is outside a complement is inside its solid, where samples are known.
+template <int D>
+double least_of_parts(const std::vector<SharedSurface<D>>& parts)
+{
+	double least = Bounds<D>::infinity;
+	for (const auto& part : parts) least = std::min(least, part->largest_sphere());
+	return least;
+}
+
 /// Everything but a solid: a drum is what a cylinder leaves.
 template <int D>
 class Complement : public Surface<D> {
@@ -42,6 +51,7 @@ public:
 	explicit Intersection(std::vector<SharedSurface<D>> parts);
 	Nearest<D> nearest(const Vec<D>& at) const override;
 	Bounds<D> bounds() const override;
+	double largest_sphere() const override { return least_of_parts(parts_); }
 
 private:
 	std::vector<SharedSurface<D>> parts_;
@@ -55,6 +65,7 @@ public:
 	explicit Union(std::vector<SharedSurface<D>> parts);
 	Nearest<D> nearest(const Vec<D>& at) const override;
 	Bounds<D> bounds() const override;
+	double largest_sphere() const override { return least_of_parts(parts_); }
 
 private:
 	std::vector<SharedSurface<D>> parts_;

@@ -237,5 +237,25 @@ TEST(SetAlgebra, RefusesToMakeSomethingOfNothing)
 	EXPECT_TRUE(mentions(complaint([] { Complement<3>(nullptr); }), "a complement needs a shape"));
 }
 
+/// A ball that answers spheres up to a radius only.
+class Doubtful : public Ball<3> {
+public:
+	explicit Doubtful(double largest) : Ball<3>({}, 1), largest_(largest) {}
+	double largest_sphere() const override { return largest_; }
+
+private:
+	double largest_;
+};
+
+TEST(SetAlgebra, TrustsSpheresAsItsLeastTrustedPart)
+{
+	const SharedSurface<3> ball = shared(Ball<3>({}, 1)), doubtful = shared(Doubtful(0.2));
+	EXPECT_EQ(ball->largest_sphere(), std::numeric_limits<double>::infinity());
+	EXPECT_EQ(Union<3>({ ball, doubtful }).largest_sphere(), 0.2);
+	EXPECT_EQ(Intersection<3>({ doubtful, ball }).largest_sphere(), 0.2);
+	EXPECT_EQ(Placed<3>(doubtful, { 1, 2, 3 }).largest_sphere(), 0.2);
+	EXPECT_EQ(Complement<3>(doubtful).largest_sphere(), std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 }  // namespace graindrive::geometry

@@ -53,6 +53,10 @@ public:
 
 	/// A box that holds the solid, for search and packing: nothing of the solid lies outside. The default holds everything.
 	virtual Bounds<D> bounds() const { return {}; }
+
+	/// The radius [m] up to which spheres outside meet the surface where it is. Where distances are only known to be bounds, as beyond
+	/// the grid of a sampled one, a larger sphere would meet it too soon.
+	virtual double largest_sphere() const { return Bounds<D>::infinity; }
 };
 
 /// Surfaces do not change, so many bodies and compositions may share one.

@@ -16,6 +16,9 @@ CLASSES = [
     engines.Law2_ScGeom_ContactPhys_HertzHistory,
     engines.Law2_ScGeom_ContactPhys_HertzRestitution,
     engines.Law2_ScGeom_ContactPhys_SpringDashpot,
+    engines.Solid,
+    engines.Bo1_Solid_Aabb,
+    engines.Ig2_Solid_Sphere_ScGeom,
 ]
 each_class = pytest.mark.parametrize("cls", CLASSES)
 

@@ -212,13 +212,20 @@ private:
 		message << cls << " is expected to take " << expected << " bytes but has a block of " << block;
 		refuse(message.str());
 	}
-	/// Only classes that engines derive from: there a wrong size would put our members over YADE's.
+	/// Only classes that engines derive from: there a wrong size would put our members over YADE's. Where a Shape ends is known to the
+	/// byte from Sphere.radius, the first member of a class derived from it.
 	void sizes()
 	{
 		size<yade::Engine>("Engine");
 		size<yade::LawFunctor>("LawFunctor");
 		size<yade::IPhysFunctor>("IPhysFunctor");
 		size<yade::FrictPhys>("FrictPhys");
+		size<yade::BoundFunctor>("BoundFunctor");
+		size<yade::IGeomFunctor>("IGeomFunctor");
+#ifndef GRAINDRIVE_YADE_HEADERS
+		static_assert(offsetof(yade::Sphere, radius) == sizeof(yade::Shape));
+		static_assert(offsetof(yade::State, ori) - offsetof(yade::State, pos) == offsetof(yade::Se3r, orientation));
+#endif
 	}
 
 	void label(const char* cls, std::size_t offset)
@@ -238,6 +245,8 @@ private:
 		periodic_engine();
 		label("LawFunctor", offsetof(yade::LawFunctor, label));
 		label("IPhysFunctor", offsetof(yade::IPhysFunctor, label));
+		label("BoundFunctor", offsetof(yade::BoundFunctor, label));
+		label("IGeomFunctor", offsetof(yade::IGeomFunctor, label));
 	}
 
 	void periodic_engine()
@@ -277,8 +286,40 @@ private:
 			raw(unsigned(yade::State::DOF_X | yade::State::DOF_RZ)));
 	}
 
+	void shape_and_bound()
+	{
+		py::object shape = make("Shape"), box = make("Aabb");
+		vector("Shape", "color", shape, offsetof(yade::Shape, color));
+		flag("Shape", "wire", shape, offsetof(yade::Shape, wire));
+		flag("Shape", "highlight", shape, offsetof(yade::Shape, highlight));
+		vector("Aabb", "color", box, offsetof(yade::Aabb, color));
+		vector("Aabb", "min", box, offsetof(yade::Aabb, min));
+		vector("Aabb", "max", box, offsetof(yade::Aabb, max));
+		made_by_name("Aabb");
+		made_by_name("ScGeom");
+		class_index(shape);
+	}
+	/// The class factory, without which no dispatcher finds a shape's class.
+	void made_by_name(const char* cls)
+	{
+		const auto object = Singleton<yade::ClassFactory>::instance().createShared(cls);
+		++facts_;
+		if (!object || object->getClassName() != cls) refuse(string("YADE's class factory does not make a ") + cls);
+	}
+	/// The root has no index of its own; a class derived from it has the index that Python's dispIndex tells.
+	void class_index(const py::object& root)
+	{
+		const auto index = [](const py::object& object) { return py::extract<yade::Shape&>(object)().getClassIndex(); };
+		py::object sphere = make("Sphere");
+		const int most = py::extract<yade::Shape&>(sphere)().getMaxCurrentlyUsedClassIndexOfKin();
+		++facts_;
+		if (index(root) == -1 && index(sphere) == py::extract<int>(sphere.attr("dispIndex"))() && index(sphere) <= most) return;
+		refuse("Shape.getClassIndex does not tell the index that dispatchers use");
+	}
+
 	void body_and_shape()
 	{
+		shape_and_bound();
 		py::object body = make("Body"), material = make("FrictMat"), shape = make("Sphere"), state = make("State");
 		integer<int>("Body", "id", body, offsetof(yade::Body, id));
 		integer<int>("Body", "flags", body, offsetof(yade::Body, flags));
@@ -471,26 +512,36 @@ private:
 			"::pyDict", "::pyDictCustom", "::callPostLoad", "::checkPyClassRegistersItself", "::pyRegisterClass",
 			"::pyHandleCustomCtorArgs" };
 		py::object engine = make("Engine"), law = make("LawFunctor"), iphys = make("IPhysFunctor"), phys = make("FrictPhys");
-		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>>{
-				 { "Engine", engine }, { "LawFunctor", law }, { "IPhysFunctor", iphys }, { "FrictPhys", phys } }) {
+		py::object bound = make("BoundFunctor"), igeom = make("IGeomFunctor"), shape = make("Shape");
+		for (const auto& [cls, object] :
+			std::vector<std::pair<string, py::object>>{ { "Engine", engine }, { "LawFunctor", law }, { "IPhysFunctor", iphys },
+				{ "FrictPhys", phys }, { "BoundFunctor", bound }, { "IGeomFunctor", igeom }, { "Shape", shape } }) {
 			slots(cls, object, 0, 0, { "::~" + cls, "::~" + cls });
 			slots(cls, object, 0, 2, serializable);
 		}
 		slots("Engine", engine, 0, 12, { "yade::Engine::isActivated()", "yade::Engine::action()" });
-		slots("FrictPhys", phys, 0, 12,
-			{ "::modifyClassIndex", "::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin",
-				"::incrementMaxCurrentlyUsedClassIndexOfKin" });
-		slots("FrictPhys (Indexable)", phys, 24, 0,
-			{ "::incrementMaxCurrentlyUsedClassIndexOfKin", "::modifyClassIndex", "::~FrictPhys", "::~FrictPhys",
-				"::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin" });
+		for (const auto& [cls, object] :
+			std::vector<std::pair<string, py::object>>{ { "FrictPhys", phys }, { "Shape", shape } }) {
+			slots(cls, object, 0, 12,
+				{ "::modifyClassIndex", "::getClassIndex", "::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin",
+					"::incrementMaxCurrentlyUsedClassIndexOfKin" });
+			slots(cls + " (Indexable)", object, 24, 0,
+				{ "::incrementMaxCurrentlyUsedClassIndexOfKin", "::modifyClassIndex", "::~" + cls, "::~" + cls, "::getClassIndex",
+					"::getBaseClassIndex", "::getMaxCurrentlyUsedClassIndexOfKin" });
+		}
 		std::vector<string> wrapper{ "::checkOrder" };
 		for (const char* name : { "::go(", "::goReverse(" }) wrapper.insert(wrapper.end(), 7, name);
-		for (const auto& [cls, object] :
-			std::vector<std::pair<string, py::object>>{ { "LawFunctor", law }, { "IPhysFunctor", iphys } }) {
-			slots(cls, object, 0, 12, { "::getFunctorTypes", "::get2DFunctorType1", "::get2DFunctorType2" });
+		for (const auto& [cls, object] : std::vector<std::pair<string, py::object>>{
+				 { "LawFunctor", law }, { "IPhysFunctor", iphys }, { "BoundFunctor", bound }, { "IGeomFunctor", igeom } }) {
+			slots(cls, object, 0, 12, { "::getFunctorTypes" });
+			if (cls == "BoundFunctor")
+				slots(cls, object, 0, 13, { "::get1DFunctorType1" });
+			else
+				slots(cls, object, 0, 13, { "::get2DFunctorType1", "::get2DFunctorType2" });
 			slots(cls + " (wrapper)", object, 80, 0, { "::~" + cls, "::~" + cls });
 			slots(cls + " (wrapper)", object, 80, 2, wrapper);
 		}
+		slots("IGeomFunctor", igeom, 0, 15, { "yade::IGeomFunctor::preStep()" });
 	}
 
 	py::dict damage_;

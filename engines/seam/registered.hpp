@@ -57,6 +57,13 @@ void visit_base(yade::Functor& functor, Visit&& visit)
 	visit("label", functor.label);
 }
 template <class Visit>
+void visit_base(yade::Shape& shape, Visit&& visit)
+{
+	visit("color", shape.color);
+	visit("wire", shape.wire);
+	visit("highlight", shape.highlight);
+}
+template <class Visit>
 void visit_base(yade::FrictPhys& phys, Visit&& visit)
 {
 	visit("kn", phys.kn);
@@ -92,7 +99,10 @@ private:
 inline const char* base_name(const yade::Engine*) { return "Engine"; }
 inline const char* base_name(const yade::LawFunctor*) { return "LawFunctor"; }
 inline const char* base_name(const yade::IPhysFunctor*) { return "IPhysFunctor"; }
+inline const char* base_name(const yade::IGeomFunctor*) { return "IGeomFunctor"; }
+inline const char* base_name(const yade::BoundFunctor*) { return "BoundFunctor"; }
 inline const char* base_name(const yade::FrictPhys*) { return "FrictPhys"; }
+inline const char* base_name(const yade::Shape*) { return "Shape"; }
 
 /// An engine whose attributes a checkpoint keeps, to the last bit.
 class Stateful {

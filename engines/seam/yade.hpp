@@ -13,6 +13,8 @@
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
 #include <core/State.hpp>
+#include <lib/factory/ClassFactory.hpp>
+#include <pkg/common/Aabb.hpp>
 #include <pkg/common/Dispatching.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>

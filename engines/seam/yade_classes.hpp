@@ -103,12 +103,21 @@ public:
 /// Classes that dispatchers tell apart by an index.
 class Indexable {
 public:
-	virtual void incrementMaxCurrentlyUsedClassIndexOfKin();
-	virtual int& modifyClassIndex();
-	virtual ~Indexable();
-	virtual const int& getClassIndex() const;
-	virtual const int& getBaseClassIndex(int depth) const;
-	virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const;
+	virtual void incrementMaxCurrentlyUsedClassIndexOfKin() = 0;
+	virtual int& modifyClassIndex() = 0;
+	virtual ~Indexable() = default;
+	virtual const int& getClassIndex() const = 0;
+	virtual const int& getBaseClassIndex(int depth) const = 0;
+	virtual const int& getMaxCurrentlyUsedClassIndexOfKin() const = 0;
+
+protected:
+	/// The constructor of every class with an index of its own calls this: the first object takes the next free index.
+	void createIndex()
+	{
+		if (modifyClassIndex() != -1) return;
+		incrementMaxCurrentlyUsedClassIndexOfKin();
+		modifyClassIndex() = getMaxCurrentlyUsedClassIndexOfKin();
+	}
 };
 
 /// A base of YADE's that engines read but never derive from: Serializable and Indexable, no more.
@@ -116,7 +125,16 @@ class IndexableLayout : public Serializable {
 	void* indexable_;  // the second vptr
 };
 
-class Bound;
+/// The box that the collider sees.
+class Bound : public IndexableLayout {
+	char update_[40];  // when and where it was last made
+
+public:
+	Vector3r color;
+	Vector3r min, max;  ///< corners [m]; in a periodic cell those of the body's own image
+};
+
+class Aabb : public Bound {};
 
 class Material : public IndexableLayout {
 public:
@@ -131,8 +149,29 @@ public:
 	Real frictionAngle;
 };
 
-class Shape : public IndexableLayout {
-	char looks_[64];  // colour, wire, highlight, drawing
+class Shape : public Serializable, public Indexable {
+public:
+	Shape() = default;
+	~Shape() override;
+	std::string getBaseClassName(unsigned int i = 0) const override;
+	int getBaseClassNumber() const override;
+	std::string getClassName() const override;
+	void pySetAttr(const std::string& key, const boost::python::object& value) override;
+	boost::python::dict pyDict() const override;
+	void callPostLoad() override;
+	void pyRegisterClass(boost::python::object scope) override;
+	int& modifyClassIndex() override;
+	const int& getClassIndex() const override;
+	const int& getBaseClassIndex(int depth) const override;
+	const int& getMaxCurrentlyUsedClassIndexOfKin() const override;
+	void incrementMaxCurrentlyUsedClassIndexOfKin() override;
+
+private:
+	shared_ptr<void> cached_functors_[2];  // of bounds and of drawing
+
+public:
+	Vector3r color = Vector3r::Ones();
+	bool wire = false, highlight = false;
 };
 
 class Sphere : public Shape {
@@ -148,6 +187,12 @@ public:
 		Real orientation[4];
 	};
 	std::map<int, Place> members;
+};
+
+/// Place and orientation, as functors of bounds are given them: the first members of State, where no alignment parts them.
+struct Se3r {
+	Vector3r position;
+	Eigen::Quaternion<Real, Eigen::DontAlign> orientation;
 };
 
 /// Position, velocity and inertia of a body.
@@ -213,6 +258,11 @@ class ScGeom : public GenericSpheresContact {
 	char axes_[64];  // cached rotations, references to the radii
 public:
 	Real penetrationDepth;
+
+	/// Sets the normal, the rotation since the last step and the increment of shear, from radii, overlap and contact point. With
+	/// `avoid_ratcheting` velocities are those of spheres of these radii, without it those of the bodies' material at the contact.
+	void precompute(const State& state1, const State& state2, const Scene* scene, const shared_ptr<Interaction>& interaction,
+		const Vector3r& current_normal, bool is_new, const Vector3r& shift2, bool avoid_ratcheting);
 };
 
 class IPhys : public Serializable, public Indexable {
@@ -374,31 +424,55 @@ public:
 	std::string label;
 };
 
-/// The second base of a functor, with a vptr of its own: an overload of `go` and `goReverse` for every number of arguments.
-template <class Result, class A, class B, class C>
-class FunctorWrapperLayout {
+/// The second base of a functor, with a vptr of its own: overloads of `go` for one to seven arguments, then as many of `goReverse`.
+class FunctorWrapperBase {
 public:
-	virtual ~FunctorWrapperLayout() = default;
+	virtual ~FunctorWrapperBase() = default;
+	/// The order of types in which a functor on two types of shapes wants its arguments, "First Second".
 	virtual std::string checkOrder() const { return ""; }
-	virtual Result go1_() { throw std::logic_error("unused overload of go"); }
-	virtual Result go2_() { throw std::logic_error("unused overload of go"); }
-	virtual Result go(A, B, C) { throw std::logic_error("go is not overridden"); }
-	virtual Result go4_() { throw std::logic_error("unused overload of go"); }
-	virtual Result go5_() { throw std::logic_error("unused overload of go"); }
-	virtual Result go6_() { throw std::logic_error("unused overload of go"); }
-	virtual Result go7_() { throw std::logic_error("unused overload of go"); }
-	virtual Result reverse1_() { throw std::logic_error("unused overload of goReverse"); }
-	virtual Result reverse2_() { throw std::logic_error("unused overload of goReverse"); }
-	virtual Result goReverse(A, B, C) { throw std::logic_error("goReverse is not overridden"); }
-	virtual Result reverse4_() { throw std::logic_error("unused overload of goReverse"); }
-	virtual Result reverse5_() { throw std::logic_error("unused overload of goReverse"); }
-	virtual Result reverse6_() { throw std::logic_error("unused overload of goReverse"); }
-	virtual Result reverse7_() { throw std::logic_error("unused overload of goReverse"); }
 };
 
-/// YADE's multimethod on two types: `go` with three arguments is the one that its dispatchers call.
-template <class Result, class A, class B, class C>
-class BinaryDispatchFunctor : public Functor, public FunctorWrapperLayout<Result, A, B, C> {
+/// `count` overloads that YADE does not call for this kind of functor; `first` is the number of the first one.
+template <class Before, int first, int count>
+class UnusedOverloads : public UnusedOverloads<Before, first, count - 1> {
+	virtual void unused(std::integral_constant<int, first + count - 1>) { throw std::logic_error("unused overload of go"); }
+};
+template <class Before, int first>
+class UnusedOverloads<Before, first, 0> : public Before {
+};
+
+template <class Before, class Result, class... Arguments>
+class Go : public Before {
+public:
+	virtual Result go(Arguments...) { throw std::logic_error("go is not overridden"); }
+};
+template <class Before, class Result, class... Arguments>
+class GoReverse : public Before {
+public:
+	virtual Result goReverse(Arguments...) { throw std::logic_error("goReverse is not overridden"); }
+};
+
+/// Dispatchers call the overload of `go` that has as many arguments as their kind of functor.
+template <class Result, class... Arguments>
+class FunctorWrapperLayout
+	: public UnusedOverloads<
+		  GoReverse<
+			  UnusedOverloads<Go<UnusedOverloads<FunctorWrapperBase, 1, sizeof...(Arguments) - 1>, Result, Arguments...>, 8, 6>,
+			  Result, Arguments...>,
+		  15, 7 - sizeof...(Arguments)> {
+};
+
+/// YADE's multimethod on one type.
+template <class Result, class... Arguments>
+class UnaryDispatchFunctor : public Functor, public FunctorWrapperLayout<Result, Arguments...> {
+public:
+	std::vector<std::string> getFunctorTypes() const override { return { get1DFunctorType1() }; }
+	virtual std::string get1DFunctorType1() const { throw std::logic_error("get1DFunctorType1 is not overridden"); }
+};
+
+/// YADE's multimethod on two types.
+template <class Result, class... Arguments>
+class BinaryDispatchFunctor : public Functor, public FunctorWrapperLayout<Result, Arguments...> {
 public:
 	std::vector<std::string> getFunctorTypes() const override { return { get2DFunctorType1(), get2DFunctorType2() }; }
 	virtual std::string get2DFunctorType1() const { throw std::logic_error("get2DFunctorType1 is not overridden"); }
@@ -432,6 +506,45 @@ public:
 	boost::python::dict pyDict() const override;
 	void callPostLoad() override;
 	void pyRegisterClass(boost::python::object scope) override;
+};
+
+/// Makes the box around a shape.
+class BoundFunctor : public UnaryDispatchFunctor<void, const shared_ptr<Shape>&, shared_ptr<Bound>&, const Se3r&, const Body*> {
+public:
+	BoundFunctor() = default;
+	~BoundFunctor() override;
+	std::string getBaseClassName(unsigned int i = 0) const override;
+	int getBaseClassNumber() const override;
+	std::string getClassName() const override;
+	void pySetAttr(const std::string& key, const boost::python::object& value) override;
+	boost::python::dict pyDict() const override;
+	void callPostLoad() override;
+	void pyRegisterClass(boost::python::object scope) override;
+};
+
+/// Makes an interaction's `geom` from two shapes: body 1's, body 2's, their states, the shift to the image of body 2 that touches,
+/// whether to answer for bodies apart, the interaction. `go` returns false where they do not touch.
+class IGeomFunctor : public BinaryDispatchFunctor<bool, const shared_ptr<Shape>&, const shared_ptr<Shape>&, const State&,
+						 const State&, const Vector3r&, const bool&, const shared_ptr<Interaction>&> {
+public:
+	IGeomFunctor() = default;
+	~IGeomFunctor() override;
+	std::string getBaseClassName(unsigned int i = 0) const override;
+	int getBaseClassNumber() const override;
+	std::string getClassName() const override;
+	void pySetAttr(const std::string& key, const boost::python::object& value) override;
+	boost::python::dict pyDict() const override;
+	void callPostLoad() override;
+	void pyRegisterClass(boost::python::object scope) override;
+	virtual void preStep();  ///< once a step before the pairs, on one thread: the place to raise an error
+};
+
+/// Makes objects by the names of their classes; dispatchers ask it for the class index of a type that a functor names.
+class ClassFactory {
+public:
+	bool registerFactorable(
+		std::string name, Factorable* (*create)(), shared_ptr<Factorable> (*create_shared)(), void* (*create_pure)());
+	shared_ptr<Factorable> createShared(std::string name);
 };
 
 }  // namespace yade
