@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 SI, GRAIN = "SI", "grain"  # systems of units: that of the Magnus study, and d, rho, g of the wiggle study
 
-# What a dimension is called in each system; disks have a mass per area, so that rho is in kg/m^2.
+# What a dimension is called in each system; disks have a mass per area, so that rho is in kg/m^2, spheres a mass per volume.
 DIMENSIONS = {
     "length": ("m", "d"),
     "time": ("s", "sqrt(d/g)"),
     "velocity": ("m/s", "sqrt(g d)"),
     "spin": ("rad/s", "sqrt(g/d)"),
     "force": ("N", "rho g d^2"),
+    "force on spheres": ("N", "rho g d^3"),
     "force squared": ("N^2", "rho^2 g^2 d^4"),
     "torque": ("N m", "rho g d^3"),
     "work": ("J", "rho g d^3"),
@@ -36,15 +37,27 @@ def of(unit, **meanings):
 
 
 DISKS = {
-    **of("-", id="YADE's id of the disk"),
+    **of("-", id="YADE's id of the disk or sphere"),
     **of(
         "length",
         x="of the centre; in a periodic box within [0, period), but the driven body is never cut in two",
-        y="of the centre",
+        y="of the centre; of spheres within the period as x",
+        z="of the centre, spheres only, within the period as x",
         r="radius",
     ),
-    **of("velocity", vx="of the centre, half a time step before t", vy="of the centre, half a time step before t"),
-    **of("spin", spin="angular velocity, counter-clockwise, half a time step before t"),
+    **of(
+        "velocity",
+        vx="of the centre, half a time step before t",
+        vy="of the centre, half a time step before t",
+        vz="of the centre, spheres only, half a time step before t",
+    ),
+    **of(
+        "spin",
+        spin="angular velocity, counter-clockwise, half a time step before t; disks only",
+        spin_x="angular velocity of a sphere, half a time step before t",
+        spin_y="of a sphere",
+        spin_z="of a sphere",
+    ),
 }
 
 # Where a name stands -> {name: Quantity}. NAME_err, a standard error, has the unit of NAME and no line of its own.
@@ -124,33 +137,49 @@ QUANTITIES = {
     },
     "frames/NNNN": {
         **of("time", t="attribute: time of the picture"),
-        **of("length", period="attribute: period of the box in x, which begins at 0; 0: it does not repeat"),
+        **of(
+            "length",
+            period="attribute: period of the box in x, which begins at 0; 0: it does not repeat; of spheres in x, y, z",
+        ),
         **DISKS,
         **of("-", role="0 grain, 1 base, wall or lid (2, in exports, bead of the driven body)"),
     },
     "frames/NNNN/intruder": {
         **DISKS,
-        **of("length", centre="(x, y) of the driven body's centroid"),
+        **of("length", centre="(x, y) of the driven body's centroid, among spheres (x, y, z)"),
+        **of("-", turn="among spheres: the body's orientation, a quaternion (w, x, y, z)"),
         **of("rad", angle="a single disk: how far it has turned since the start, up to whole turns"),
     },
     "frames/NNNN/contacts": {
         **of(
             "-",
             i="row of the first side in the frame's arrays; -1: the driven body",
-            j="row of the second side; -1: the driven body; -2, -3, -4, -5: flat wall x_low, x_high, y_low, y_high",
+            j="row of the second side; -1: the driven body; -2, -3, -4, -5, -6, -7: flat wall x_low, x_high,"
+            " y_low, y_high, z_low, z_high",
             id_i="YADE's id of the first side, of a body its bead's",
             id_j="YADE's id of the second side, of a body its bead's; of a wall as j",
         ),
         **of(
             "force",
-            fn="normal force: > 0 pushes the two apart, < 0 pulls them together (a damped contact that separates)",
-            ft="tangential force on i along z x n, n from i to j: > 0 drives i to the left of n",
+            fn="normal force: > 0 pushes the two apart, < 0 pulls them together (a damped contact that separates);"
+            " of spheres in rho g d^3",
+            ft="tangential force on i along z x n, n from i to j: > 0 drives i to the left of n; disks only",
+        ),
+        **of(
+            "force on spheres",
+            ft_x="tangential force on a sphere i",
+            ft_y="tangential force on a sphere i",
+            ft_z="tangential force on a sphere i",
         ),
         **of(
             "length",
-            slip="tangential spring, way of i against j along z x n",
+            slip="tangential spring, way of i against j along z x n; disks only",
+            slip_x="tangential spring, way of a sphere i against j",
+            slip_y="of a sphere",
+            slip_z="of a sphere",
             px="contact point, the middle of the overlap, next to i: in the periodic image in which i is drawn",
             py="contact point",
+            pz="contact point of spheres",
         ),
     },
     "intruder": {
@@ -256,6 +285,13 @@ def labelled(group, arrays, system):
         return content if unit is None else (content, unit)
 
     return {name: with_unit(name, content) for name, content in arrays.items()}
+
+
+def of_spheres(contacts, system):
+    """Return a frame's contacts between spheres with the unit of their normal force, which is another than that of disks."""
+    if system and "fn" in contacts:
+        return {**contacts, "fn": (contacts["fn"], DIMENSIONS["force on spheres"][system == GRAIN])}
+    return contacts
 
 
 def with_units(group, values, system, known=()):

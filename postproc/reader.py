@@ -23,7 +23,8 @@ class Frame:
     """The bed at time `t`: dicts of arrays by name, one entry per disk or contact, as `quantities` explains them.
 
     `grains` are grains and base, `contacts` those of this moment, `intruder` the driven body's disks with its `centre`;
-    `period` is the box's in x, which begins at 0; 0 where it does not repeat.
+    `period` is the box's in x, which begins at 0; 0 where it does not repeat. Spheres have columns along z too, and
+    `period` is an array (3,).
     """
 
     t: float
@@ -33,6 +34,21 @@ class Frame:
     period: float = 0.0
 
     @property
+    def axes(self):
+        """The axes of the frame's places: "xy" of disks, "xyz" of spheres."""
+        return "xyz" if "z" in self.grains else "xy"
+
+    @property
+    def periods(self):
+        """Period of the box along each axis, (D,), 0 where it does not repeat."""
+        given = np.atleast_1d(np.asarray(self.period, dtype=float))
+        return np.append(given, np.zeros(len(self.axes)))[: len(self.axes)]
+
+    def along_axes(self, columns, name="{}"):
+        """Return columns of vectors as an array (n, D): `name` says how they are called, "v{}" for vx, vy, vz."""
+        return np.column_stack([columns[name.format(axis)] for axis in self.axes])
+
+    @property
     def role(self):
         """Role of each grain, (N,) of GRAIN, BASE or BEAD; all GRAIN where the run did not store it."""
         return self.grains.get("role", np.zeros(len(self.grains["x"]), dtype=int))
@@ -40,7 +56,7 @@ class Frame:
     @property
     def speed(self):
         """Speed of each grain, (N,)."""
-        return np.hypot(self.grains["vx"], self.grains["vy"])
+        return np.linalg.norm(self.along_axes(self.grains, "v{}"), axis=1)
 
     def disks(self):
         """Return all disks, grains and base first, then those of the driven body with the role BEAD: a dict of arrays.
@@ -55,15 +71,13 @@ class Frame:
         return {name: np.concatenate([column, beads[name]]) for name, column in grains.items()}
 
     def contact_ends(self):
-        """Return where the lines of the contacts begin and end, two arrays (n, 2).
+        """Return where the lines of the contacts begin and end, two arrays (n, D).
 
         They join the centre of i with that image of j's centre which touches it. A side that is no disk of the frame (a
         flat wall) has the contact point in its centre's place.
         """
         c = self.contacts
-        point = np.column_stack([c["px"], c["py"]])
-        disks = self.disks()
-        centres = np.column_stack([disks["x"], disks["y"]])
+        point, centres = self.along_axes(c, "p{}"), self.along_axes(self.disks())
         rows = {id_: row for row, id_ in enumerate(self.intruder.get("id", ()), start=len(self.grains["x"]))}
         ends = []
         for side in ("i", "j"):
@@ -74,14 +88,13 @@ class Frame:
         return tuple(self.beside(end, point) for end in ends)
 
     def beside(self, places, point):
-        """Return that image of places (n, 2) which is next to points (n, 2)."""
-        if not self.period:
-            return places
-        winds = np.round((places[:, 0] - point[:, 0]) / self.period)
-        return np.column_stack([places[:, 0] - self.period * winds, places[:, 1]])
+        """Return that image of places (n, D) which is next to points (n, D)."""
+        lengths = np.where(self.periods > 0, self.periods, np.inf)
+        winds = np.round((places - point) / lengths)
+        return places - self.periods * winds
 
     def place(self, points, beads):
-        """Return points (n, 2) of the driven body, about its centroid at the start, where they are now.
+        """Return points (n, 2) of the driven body, about its centroid at the start, where they are now; disks only.
 
         `beads` (m, 2) are its disks about the centroid at the start, in the order of `intruder`: what has become of them
         tells the turn, of a single disk its `angle`.
@@ -147,7 +160,7 @@ class Run:
             group = file["frames"][self.frame_names[number]]
             contacts, body = ({n: d[()] for n, d in group.get(part, {}).items()} for part in ("contacts", "intruder"))
             grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
-            return Frame(float(group.attrs["t"]), grains, contacts, body, float(group.attrs.get("period", 0)))
+            return Frame(float(group.attrs["t"]), grains, contacts, body, plain(group.attrs.get("period", 0.0)))
 
     def group(self, name):
         """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
@@ -181,6 +194,6 @@ def read_series(group):
 
 
 def plain(value):
-    """Return an HDF5 scalar as Python's number or text."""
+    """Return an HDF5 scalar as Python's number or text; an array stays one."""
     value = value.item() if isinstance(value, np.generic) else value
     return value.decode() if isinstance(value, bytes) else value

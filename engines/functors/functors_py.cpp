@@ -17,12 +17,13 @@ py::dict present_contacts_table(
 	const yade::Scene& scene, const yade::LawFunctor& law, const Ip2_FrictMat_FrictMat_ContactPhys& contact_maker)
 {
 	std::vector<int> i, j, slipping;
-	std::vector<Real> overlap, slip, normal, normal_force, tangential_force;
+	std::vector<Real> overlap, slip, slip_vector, normal, normal_force, tangential_force;
 	const auto append = [](std::vector<Real>& rows, const Vector3r& v) { rows.insert(rows.end(), v.data(), v.data() + 3); };
 	for (const PresentContact& c : present_contacts(scene, law, contact_maker)) {
 		i.push_back(c.id1), j.push_back(c.id2), slipping.push_back(c.answer.slipping);
 		overlap.push_back(c.overlap);
 		slip.push_back(c.answer.slip.dot(Vector3r(-c.normal[1], c.normal[0], 0)));
+		append(slip_vector, c.answer.slip);
 		append(normal, c.normal);
 		append(normal_force, c.answer.normal_force2);
 		append(tangential_force, c.answer.tangential_force2);
@@ -30,6 +31,7 @@ py::dict present_contacts_table(
 	py::dict table;
 	table["i"] = seam::array_of(i), table["j"] = seam::array_of(j), table["slipping"] = seam::array_of(slipping);
 	table["overlap"] = seam::array_of(overlap), table["slip"] = seam::array_of(slip), table["normal"] = seam::array_of(normal, 3);
+	table["slip_vector"] = seam::array_of(slip_vector, 3);
 	table["normal_force"] = seam::array_of(normal_force, 3);
 	table["tangential_force"] = seam::array_of(tangential_force, 3);
 	return table;
@@ -50,7 +52,8 @@ void bind_functors()
 	py::def("present_contacts", present_contacts_table, (py::arg("scene"), py::arg("law"), py::arg("contact_maker")),
 		"Contacts of the disks and spheres of a scene (O._sceneObj) at the present positions, those that YADE's next step will\n"
 		"find, by one of our Law2_ functors and our Ip2_: arrays as of `contact_table`, without point, with slip [m] along z x "
-		"n.\n"
+		"n,\n"
+		"which tells all of it for disks, and slip_vector [m], shape (n, 3), of i against j, for spheres.\n"
 		"Nothing changes. Pairs of frozen bodies and of members of one clump are left out. Raises TypeError for another law.");
 }
 

@@ -1,4 +1,5 @@
 /// Shapes of a user's own, and rigid motion.
+#include "engines/geometry/section.hpp"
 #include "engines/geometry/surface.hpp"
 
 #include "engines/geometry/rigid_motion.hpp"
@@ -87,6 +88,17 @@ TEST(MovingSurface, KeepsInfiniteSidesWhereTheyAre)
 	EXPECT_EQ(pipe.bounds().high[0], std::numeric_limits<double>::infinity());
 	EXPECT_NEAR(pipe.bounds().high[1], 2, 1e-15);
 	EXPECT_NEAR(pipe.bounds().low[2], -2, 1e-15);
+}
+
+TEST(Section, of_a_cylinder_along_z_is_a_disk_and_of_a_ball_nothing)
+{
+	const Section disk(shared(Cylinder({ 1, 2, 0 }, { 0, 0, 1 }, 0.5)));
+	const Nearest<2> found = disk.nearest({ 1, 4 });
+	EXPECT_NEAR(found.distance, 1.5, 1e-15);
+	EXPECT_NEAR(found.normal[1], 1, 1e-15);
+	EXPECT_EQ(disk.bounds().high[0], 1.5);
+	const Section of_ball(shared(Ball<3>({ 0, 0, 0.1 }, 1)));
+	EXPECT_THROW(of_ball.nearest({ 0.5, 0 }), std::invalid_argument);
 }
 
 TEST(MovingSurface, RefusesWhatIsNotThere)

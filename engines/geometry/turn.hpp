@@ -8,6 +8,7 @@ namespace graindrive::geometry {
 ///
 ///   by(r)            turned by a rotation vector r [rad]: an angle in the plane, axis times angle in space
 ///   apply, undo      a vector of the body's frame seen from the world, and back
+///   fixed()          the same orientation for many vectors: its apply gives the same bits and takes the sines but once
 ///   advanced(w, dt)  after a time dt at constant spin w, seen from the world: exact, R(t + dt) = exp(w dt) R(t)
 ///   a.then(b)        first a, then b about the world's axes
 template <int D>
@@ -25,11 +26,12 @@ struct Turn<2> {
 	Turn normalised() const { return *this; }
 	bool is_finite() const { return std::isfinite(angle); }
 
-	Vec<2> apply(const Vec<2>& v) const
-	{
-		const double c = std::cos(angle), s = std::sin(angle);
-		return { c * v[0] - s * v[1], s * v[0] + c * v[1] };
-	}
+	struct Fixed {
+		double c, s;
+		Vec<2> apply(const Vec<2>& v) const { return { c * v[0] - s * v[1], s * v[0] + c * v[1] }; }
+	};
+	Fixed fixed() const { return { std::cos(angle), std::sin(angle) }; }
+	Vec<2> apply(const Vec<2>& v) const { return fixed().apply(v); }
 	Vec<2> undo(const Vec<2>& v) const { return inverse().apply(v); }
 };
 
@@ -63,6 +65,7 @@ struct Turn<3> {
 		return { w / length, u / length };
 	}
 	bool is_finite() const { return std::isfinite(w) && geometry::is_finite(u); }
+	const Turn& fixed() const { return *this; }
 
 	/// v + 2 w (u x v) + 2 u x (u x v).
 	Vec<3> apply(const Vec<3>& v) const

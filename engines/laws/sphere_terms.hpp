@@ -50,6 +50,20 @@ struct TermsOf<SpringDashpot<P>> {
 	static constexpr bool slipping_spring_stays = true;
 };
 
+template <class Law>
+constexpr bool has_terms_of(decltype(TermsOf<Law>::roots)*)
+{
+	return true;
+}
+template <class Law>
+constexpr bool has_terms_of(...)
+{
+	return false;
+}
+
+/// True for the laws that the loop over spheres knows; of the law given only its type tells.
+constexpr auto is_for_spheres = [](const auto& law) constexpr { return has_terms_of<std::decay_t<decltype(law)>>(nullptr); };
+
 /// sqrt(R_eff) and m_eff.
 inline PairConstants pair_constants(const HertzHistory<Real>&, Real effective_radius, Real effective_mass)
 {

@@ -1,12 +1,11 @@
-/// GrainLoop: one YADE engine in place of collider, interaction loop and integrator, for disks in two dimensions.
+/// GrainLoop: one YADE engine in place of collider, interaction loop and integrator, for disks in a plane or spheres in space.
 #pragma once
 #include <memory>
 #include <mutex>
 
 #include "engines/base/contact_view.hpp"
 #include "engines/base/grain_view.hpp"
-#include "engines/loop/stepper.hpp"
-#include "engines/loop/yade_scene.hpp"
+#include "engines/loop/mirror.hpp"
 #include "engines/seam/registered.hpp"
 
 namespace graindrive {
@@ -33,14 +32,16 @@ public:
 		given("poisson", &Self::poisson);
 		given("restitution", &Self::restitution);
 		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 compiles friction and its history out");
+		visit("dimensions", &Self::dimensions, "2 for disks in a plane z = const, 3 for spheres in space");
 		visit("gravity", &Self::gravity, "acceleration [m/s^2]");
-		visit("periods", &Self::periods, "periods of the box in x and y [m], 0 where it is not periodic");
+		visit("periods", &Self::periods, "periods of the box in x, y and z [m], 0 where it is not periodic");
 		visit("precision", &Self::precision, "'double' or 'single': of the contacts; positions and velocities are always double");
 		visit("threads", &Self::threads, "number of threads; results have the same bits for any");
 		visit("skin", &Self::skin, "how far neighbours are listed [m]; 0 lets the loop choose");
 		visit("largestOverlap", &Self::largestOverlap, "overlap that stops the run [smaller radius]");
 		visit("bounds", &Self::bounds,
-			"xLow, yLow, xHigh, yHigh [m]: a centre beyond stops the run; equal numbers: no bound along that axis. By default a "
+			"xLow, yLow, xHigh, yHigh [m], in space xLow, yLow, zLow, xHigh, yHigh, zHigh: a centre beyond stops the run; equal\n"
+			"numbers: no bound along that axis. By default a "
 			"grain is\n"
 			"lost three diameters below the last frozen or driven disk, where gravity pulls. Walls bound grains in any case");
 		visit("trusted", &Self::trusted,
@@ -51,17 +52,19 @@ public:
 		visit(
 			"syncEvery", &Self::syncEvery, "write all bodies to YADE every so many steps; 0: at the end of O.run and by sync()");
 		visit("targetAreaFraction", &Self::targetAreaFraction,
-			"area fraction at which walls halt [-]: areas of disks over the box between walls or periodic sides; 0: they never "
+			"fraction at which walls halt [-]: areas of disks, volumes of spheres, over the box between walls or periodic sides; "
+			"0: they never "
 			"do");
 		visit("trackEnergy", &Self::trackEnergy,
 			"keep the energy ledger that `energy` tells; it begins when switched on, and anew with read(); a step then takes "
 			"some eight times as long");
-		visit("loads", &Self::loads, "id, F_x, F_y [N] of constant forces on bodies, as setLoad leaves them");
-		visit("wallSettings", &Self::wallSettings, "nine numbers a wall, as setWall leaves them, at the last sync, for O.save");
+		visit("loads", &Self::loads, "id, F_x, F_y, F_z [N] of constant forces on bodies, as setLoad leaves them");
+		visit("wallSettings", &Self::wallSettings, "eleven numbers a wall, as setWall leaves them, at the last sync, for O.save");
 		visit("wallSprings", &Self::wallSprings,
-			"side, id, tangential spring [m] of contacts with walls, at the last sync, for O.save");
+			"-2 - side of a wall or id of a solid, id, tangential spring [m] (in space its x, y, z), at the last sync, for "
+			"O.save");
 		visit("springs", &Self::springs,
-			("id, id, tangential spring [m] of the contacts at the last sync, for O.save; with " +
+			("id, id, tangential spring [m] (in space its x, y, z) of the contacts at the last sync, for O.save; with " +
 				laws::laws_that_remember_forces() + " the\nelastic tangential force [N] that these laws remember")
 				.c_str());
 		given("normalDampingRatio", &Self::normalDampingRatio);
@@ -100,20 +103,27 @@ public:
 	/// What O.save wrote when the file was made; empty if nothing.
 	static std::string saved_scene(const std::string& path);
 	/// Adds a flat wall or changes the one on its side.
-	void set_wall(const loop::Wall& wall);
+	void set_wall(const loop::Wall<3>& wall);
 	void remove_wall(loop::Side side);
-	std::vector<loop::Wall> walls() const;
+	std::vector<loop::Wall<3>> walls() const;
+	loop::Side side_named(const std::string& name) const;
 	/// A constant force on a body's free directions, until it is set anew.
 	void set_load(int body, const Vector3r& force);
 	/// The running loop; made from YADE's bodies if there is none yet.
-	loop::Stepper& stepper();
-	const loop::YadeBodies& bodies() const { return map_; }
+	loop::Mirror& running();
+
+	// For the running loop.
+	loop::ContactLaw contact_law() const;
+	std::vector<loop::Wall<3>> kept_walls() const;  ///< as the attributes have them
+	void keep_walls(const std::vector<loop::Wall<3>>& walls);
+	void note_watched() { built_watched_ = watched; }
+	long forces_reset_at = -1;  ///< syncCount of YADE's force container after the loop has emptied it
 
 	std::string law = "hertzHistory", precision = "double";
 	Real normalStiffness = 2e6, tangentialStiffness = 2.46e6, normalDamping = 2500, tangentialDamping = 2500;
 	Real young = 5e6, poisson = 0.45, restitution = 0.6, friction = 0.1, skin = 0, largestOverlap = 0.1;
 	Vector3r gravity = Vector3r::Zero(), periods = Vector3r::Zero();
-	int threads = 1;
+	int threads = 1, dimensions = 2;
 	long syncEvery = 0;
 	std::vector<int> watched;
 	std::vector<std::string> trusted;
@@ -125,35 +135,9 @@ public:
 
 private:
 	mutable std::recursive_mutex busy_;
-	std::unique_ptr<loop::Stepper> stepper_;
-	loop::YadeBodies map_;
+	std::unique_ptr<loop::Mirror> mirror_;
 	yade::Scene* read_from_ = nullptr;
 	long run_end_ = -2;
-	std::vector<loop::Touch> touches_;
-
-	/// A grain as YADE's body shows it to everyone: its motion, and what may not change without reading the scene anew.
-	struct Written {
-		Real x, y, vx, vy, spin, z, vz, spin_x, spin_y, mass, inertia, radius;
-		const void* material;
-		unsigned blocked;
-		int mask, clump, flags, damped;
-		bool operator==(const Written& other) const;
-	};
-	std::vector<Written> written_;  // by grain, at the last sync
-	bool open_ = false;             // somebody may have written into bodies since then
-	std::vector<loop::Grain> heard_motions_;
-
-	/// What a body counts with in its pairs, and a material's constants, as they were when the scene was read.
-	struct Counted {
-		Real mass, inertia;
-		bool held, damped;  // held: all its directions are blocked
-	};
-	std::vector<Counted> counted_;  // by rigid body
-	struct KnownMaterial {
-		boost::shared_ptr<yade::Material> material;
-		Real young, poisson, friction_angle;
-	};
-	std::vector<KnownMaterial> materials_;
 
 	/// An engine of O.engines that may read or change any body, and whether it acts behind the loop in a step.
 	struct Onlooker {
@@ -164,51 +148,23 @@ private:
 	std::vector<const yade::Engine*> met_engines_;
 	std::vector<bool> met_dead_;
 
-	bool settings_changed_ = false, pushed_ = false;
-	long forces_reset_at_ = -1;  // syncCount of YADE's force container after the loop has emptied it
+	bool settings_changed_ = false;
 	std::vector<int> built_watched_;
 	Vector3r built_periods_ = Vector3r::Zero();
+	int built_dimensions_ = 0;
 	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();
 
-	loop::ContactLaw contact_law() const;
 	Real number(const std::string& name) const;
 	void check_material() const;
-	loop::Scene settings() const;
 	void make_step();
 	void build();
 	void note_what_was_built();
-	template <class Work>
-	void guarded(Work work);
-	void compute_body_forces();
-	void follow_bodies();
-	static Real turn_in_plane(const Quaternionr& from, const Quaternionr& to, int id);
-	std::vector<loop::Spring> kept_springs() const;
-	void keep_walls();
-	void bring_walls();
-	void bring_loads();
-	void bring_guards();
 	void require_periods() const;
-	void write_bodies();
-	void read_anew_what_changed();
-	bool set_in_motion() const;
-	bool counts_otherwise() const;
-	Counted counted(int id) const;
-	void require_materials() const;
 	bool last_step_of_run() const;
-	void require_bodies(bool all) const;
 	void meet_engines();
 	bool someone_may_look() const;
-	static Written written_in(const yade::Body& body);
-	bool is_member_or_body(std::size_t grain) const;
-	void remember_what_is_written();
-	void hear_bodies();
 	void hear_settings();
 	void require_cell();
-	void require_spread() const;
-	void take_outside_forces();
-	void push_with(int id, const Vector3r& force, const Vector3r& torque, std::vector<loop::Push>& pushes);
-	int body_index(int id);
-	void add_grains(SceneView& view) const;
 };
 
 }  // namespace graindrive

@@ -166,14 +166,14 @@ std::string misfit_of_time_steps(Real saved, Real here)
 void GrainLoop::save_checkpoint(const std::string& path, const std::string& saved_scene)
 {
 	const Turn turn = take_turn();
-	stepper();
+	running();
 	sync();
 	Surroundings all = of(*scene);
 	all.saved_scene = saved_scene;
-	all.map = map_;
+	all.map = mirror_->map;
 	loop::Packer pack;
 	all.visit(pack);
-	stepper().save(path, pack.bytes);
+	running().save(path, pack.bytes);
 }
 
 std::string GrainLoop::saved_scene(const std::string& path)
@@ -192,7 +192,7 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 		if (!why.empty()) throw std::runtime_error("checkpoint " + path + ": " + why + "; build the same scene first");
 	};
 	std::string text;
-	auto restored = loop::Stepper::restore(path, threads, &text);
+	auto restored = loop::mirror_from(*this, path, text);
 	loop::Unpacker unpack(text);
 	Surroundings saved;
 	saved.visit(unpack);
@@ -201,7 +201,7 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 	for (std::size_t e = 0; e < saved.engines.size(); ++e)
 		if (scene->engines[e].get() == this) settings.unpack(saved.engines[e].state);
 	require_fit(misfit(settings, *this));
-	require_fit(misfit_of_time_steps(restored->settings().dt, scene->dt));
+	require_fit(misfit_of_time_steps(restored->time_step(), scene->dt));
 
 	for (std::size_t id = 0; id < saved.bodies.size(); ++id)
 		if (saved.bodies[id].exists) put(saved.bodies[id], *(*scene->bodies)[id]->state);
@@ -209,16 +209,16 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 		if (auto* ours = dynamic_cast<seam::Stateful*>(scene->engines[e].get()); ours && scene->engines[e].get() != this)
 			ours->unpack(saved.engines[e].state);
 	scene->iter = saved.iter, scene->time = saved.time;
-	stepper_ = std::move(restored);
-	map_ = saved.map;
+	mirror_ = std::move(restored);
+	mirror_->map = saved.map;
 	read_from_ = scene;
 	run_end_ = -2;
 	watched = settings.watched, loads = settings.loads;
 	note_what_was_built();
-	trackEnergy = stepper_->energy_ledger() != nullptr;
-	targetAreaFraction = stepper_->target_area_fraction();
-	stepper_->speak_of(map_.grain_id, scene->iter - stepper_->steps_done());
-	write_bodies();
+	mirror_->go_on_from_checkpoint();
+	trackEnergy = mirror_->energies() != nullptr;
+	targetAreaFraction = mirror_->target_fraction();
+	mirror_->write_bodies();
 	sync();
 }
 

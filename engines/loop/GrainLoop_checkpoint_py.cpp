@@ -20,7 +20,7 @@ std::string text_of(const py::object& bytes)
 
 void checkpoint(GrainLoop& loop, const std::string& path, const py::object& saved_scene)
 {
-	const Running stepper(loop);
+	const Running running(loop);
 	loop.save_checkpoint(path, text_of(saved_scene));
 }
 

@@ -23,23 +23,22 @@ yade::Scene* scene_with(const GrainLoop& loop)
 
 }  // namespace
 
-Running::Running(GrainLoop& loop) : turn(loop.take_turn()), stepper((loop.scene = scene_with(loop), loop.stepper())) {}
+Running::Running(GrainLoop& loop) : turn(loop.take_turn()), mirror((loop.scene = scene_with(loop), loop.running())) {}
 
-py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::vector<int>& grain_id)
+py::dict contact_table(const std::vector<loop::SeenContact>& contacts, int dimensions)
 {
-	std::vector<int> i, slipping;
+	std::vector<int> i, j, slipping;
 	std::vector<Real> point, normal, normal_force, tangential_force, overlap, slip;
-	for (const loop::Contact& c : contacts) {
-		i.push_back(grain_id[c.first]), slipping.push_back(c.slipping);
-		overlap.push_back(c.overlap), slip.push_back(c.slip);
-		point.insert(point.end(), { c.point_x - c.overlap / 2 * c.n_x, c.point_y - c.overlap / 2 * c.n_y, 0 });  // as YADE's
-		normal.insert(normal.end(), { c.n_x, c.n_y, 0 });
-		normal_force.insert(normal_force.end(), { c.normal * c.n_x, c.normal * c.n_y, 0 });
-		tangential_force.insert(tangential_force.end(), { c.friction * c.n_y, -c.friction * c.n_x, 0 });
+	const auto append = [](std::vector<Real>& to, const Vector3r& v) { to.insert(to.end(), v.data(), v.data() + 3); };
+	for (const loop::SeenContact& c : contacts) {
+		i.push_back(c.i), j.push_back(c.j), slipping.push_back(c.slipping), overlap.push_back(c.overlap);
+		dimensions == 2 ? slip.push_back(c.slip[0]) : append(slip, c.slip);
+		append(point, c.point), append(normal, c.normal);
+		append(normal_force, c.normal_force), append(tangential_force, c.tangential_force);
 	}
 	py::dict table;
-	table["i"] = array_of(i), table["slipping"] = array_of(slipping);
-	table["overlap"] = array_of(overlap), table["slip"] = array_of(slip);
+	table["i"] = array_of(i), table["j"] = array_of(j), table["slipping"] = array_of(slipping);
+	table["overlap"] = array_of(overlap), table["slip"] = dimensions == 2 ? array_of(slip) : array_of(slip, 3);
 	table["point"] = array_of(point, 3), table["normal"] = array_of(normal, 3);
 	table["normal_force"] = array_of(normal_force, 3), table["tangential_force"] = array_of(tangential_force, 3);
 	return table;
@@ -47,72 +46,27 @@ py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::ve
 
 namespace {
 
-np::ndarray ids(GrainLoop& loop)
+np::ndarray array_of_table(const loop::Table& table)
 {
-	const Running stepper(loop);
-	return array_of(loop.bodies().grain_id);
+	return table.columns == 1 ? array_of(table.numbers) : array_of(table.numbers, table.columns);
 }
 
-np::ndarray positions(GrainLoop& loop)
-{
-	const Running stepper(loop);
-	std::vector<Real> xy(2 * stepper->size());
-	stepper->positions(xy.data());
-	return array_of(xy, 2);
-}
-
-np::ndarray velocities(GrainLoop& loop)
-{
-	const Running stepper(loop);
-	std::vector<Real> xy(2 * stepper->size());
-	stepper->velocities(xy.data());
-	return array_of(xy, 2);
-}
-
-np::ndarray spins(GrainLoop& loop)
-{
-	const Running stepper(loop);
-	std::vector<Real> spin(stepper->size());
-	stepper->spins(spin.data());
-	return array_of(spin);
-}
+np::ndarray ids(GrainLoop& loop) { return array_of(Running(loop)->map.grain_id); }
+np::ndarray positions(GrainLoop& loop) { return array_of_table(Running(loop)->positions()); }
+np::ndarray velocities(GrainLoop& loop) { return array_of_table(Running(loop)->velocities()); }
+np::ndarray spins(GrainLoop& loop) { return array_of_table(Running(loop)->spins()); }
 
 /// The same columns as `contact_table` of YADE's loop; forces act on j, as YADE's on body 2.
-py::dict contacts(GrainLoop& loop)
-{
-	const Running stepper(loop);
-	const std::vector<loop::Contact> all = stepper->contacts();
-	py::dict table = contact_table(all, loop.bodies().grain_id);
-	std::vector<int> j;
-	for (const loop::Contact& c : all) j.push_back(loop.bodies().grain_id[c.second]);
-	table["j"] = array_of(j);
-	return table;
-}
+py::dict contacts(GrainLoop& loop) { return contact_table(Running(loop)->contacts(), loop.dimensions); }
 
 /// Those at the present positions, walls included: the wall of side s stands as j = -2 - s.
-py::dict present_contacts(GrainLoop& loop)
-{
-	constexpr int first_wall = -2;
-	const Running stepper(loop);
-	const auto [pairs, walls] = stepper->look_between_steps();
-	std::vector<loop::Contact> all = pairs;
-	const std::vector<int>& id = loop.bodies().grain_id;
-	std::vector<int> j;
-	for (const loop::Contact& c : all) j.push_back(id[c.second]);
-	for (const loop::Contact& c : walls) {
-		all.push_back(c);
-		j.push_back(first_wall - static_cast<int>(stepper->settings().walls[c.second].side));
-	}
-	py::dict table = contact_table(all, id);
-	table["j"] = array_of(j);
-	return table;
-}
+py::dict present_contacts(GrainLoop& loop) { return contact_table(Running(loop)->present_contacts(), loop.dimensions); }
 
 Real kinetic_energy(GrainLoop& loop) { return Running(loop)->kinetic_energy(); }
 Real kinetic_energy_on_step(GrainLoop& loop) { return Running(loop)->kinetic_energy_on_step(); }
 void begin_on_step(GrainLoop& loop)
 {
-	const Running stepper(loop);
+	const Running running(loop);
 	loop.begin_on_step();
 }
 void require_scene(GrainLoop& loop)
@@ -121,9 +75,9 @@ void require_scene(GrainLoop& loop)
 	loop.scene = scene_of_yade();
 	loop.require_scene();
 }
-long searches(GrainLoop& loop) { return Running(loop)->searches_done(); }
+long searches(GrainLoop& loop) { return Running(loop)->searches(); }
 
-std::string processor(GrainLoop& loop) { return name_of(Running(loop)->kernel_in_use().processor); }
+std::string processor(GrainLoop& loop) { return Running(loop)->processor(); }
 
 py::list processors()
 {
@@ -138,9 +92,9 @@ void bind_loop()
 {
 	np::initialize();
 	auto cls = seam::bind<GrainLoop>(GrainLoop::documentation);
-	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all disks into O.bodies.");
+	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all grains into O.bodies.");
 	cls.def("showBodies", &GrainLoop::show_bodies,
-		"Write positions, velocities and spins of all disks into O.bodies, unless they are true already; after O.pause().");
+		"Write positions, velocities and spins of all grains into O.bodies, unless they are true already; after O.pause().");
 	cls.def("read", &GrainLoop::read,
 		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
 	cls.def("requireScene", require_scene,
@@ -150,8 +104,9 @@ void bind_loop()
 	const std::string of_contacts =
 		"Contacts of the last step, all at the positions of its beginning, as YADE's are after a step; those at the present "
 		"positions\n"
-		"while a step is under way (in engines before GrainLoop). Arrays: i, j, slipping, overlap [m], slip of i along z x n [m] "
-		"([N] with " +
+		"while a step is under way (in engines before GrainLoop), and always those of spheres. Arrays: i, j, slipping, overlap "
+		"[m],\n"
+		"slip of i [m], along z x n for disks, shape (n, 3) for spheres ([N] with " +
 		laws::laws_that_remember_forces() +
 		",\nwhich remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).";
@@ -159,19 +114,20 @@ void bind_loop()
 	cls.def("presentContacts", present_contacts,
 		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
 		"with\n"
-		"flat walls are among them, with j = -2, -3, -4, -5 for x_low, x_high, y_low, y_high.");
+		"flat walls are among them, with j = -2, -3, -4, -5, -6, -7 for x_low, x_high, y_low, y_high, z_low, z_high; those with\n"
+		"solids have the id of the solid's body.");
 	bind_checkpoint(cls);
 	bind_walls(cls);
 	bind_energy(cls);
-	cls.add_property("ids", ids, "ids of the disks, in the order of positions, velocities and spins, shape (n,)");
-	cls.add_property("positions", positions, "centres [m], shape (n, 2); inside the periodic box");
-	cls.add_property("velocities", velocities, "velocities, half a step behind [m/s], shape (n, 2)");
-	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,)");
+	cls.add_property("ids", ids, "ids of the grains, in the order of positions, velocities and spins, shape (n,)");
+	cls.add_property("positions", positions, "centres [m], shape (n, 2), of spheres (n, 3); inside the periodic box");
+	cls.add_property("velocities", velocities, "velocities, half a step behind [m/s], shape (n, 2), of spheres (n, 3)");
+	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,), of spheres (n, 3)");
 	cls.def("beginOnStep", begin_on_step,
 		"For velocities of O.bodies that belong to the step itself, not half a step behind (LAMMPS): takes one step with half a "
 		"kick.");
 	cls.def("kineticEnergyOnStep", kinetic_energy_on_step, "Kinetic energy with the velocities of the whole step [J].");
-	cls.add_property("kineticEnergy", kinetic_energy, "of the free disks, translation and rotation [J]");
+	cls.add_property("kineticEnergy", kinetic_energy, "of the free grains, translation and rotation [J]");
 	cls.add_property("searches", searches, "searches for neighbours so far");
 	cls.add_property("processor", processor, "instructions in use: 'avx512', 'avx2' or 'portable'");
 	py::def("processors", processors,

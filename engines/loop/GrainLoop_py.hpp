@@ -21,16 +21,16 @@ yade::Scene* scene_of_yade();
 class Running {
 public:
 	explicit Running(GrainLoop& loop);
-	loop::Stepper* operator->() const { return &stepper; }
-	loop::Stepper& operator*() const { return stepper; }
+	loop::Mirror* operator->() const { return &mirror; }
+	loop::Mirror& operator*() const { return mirror; }
 
 private:
 	GrainLoop::Turn turn;
-	loop::Stepper& stepper;
+	loop::Mirror& mirror;
 };
 
-/// Columns that contacts between grains and with walls have in common: i, slipping, overlap, slip, point, normal, forces.
-py::dict contact_table(const std::vector<loop::Contact>& contacts, const std::vector<int>& grain_id);
+/// Columns of contacts: i, j, slipping, overlap, slip, point, normal, forces.
+py::dict contact_table(const std::vector<loop::SeenContact>& contacts, int dimensions);
 
 void bind_checkpoint(GrainLoopClass& cls);
 void bind_walls(GrainLoopClass& cls);

@@ -4,32 +4,49 @@
 namespace graindrive {
 namespace {
 
+/// Of a disk's wall a number, along its other axis; of a sphere's wall a vector.
+geometry::Vec<3> slide_of(const py::object& given, loop::Side side, int dimensions)
+{
+	geometry::Vec<3> slide;
+	if (dimensions == 2) {
+		slide[1 - loop::axis_of(side)] = py::extract<Real>(given);
+		return slide;
+	}
+	const py::extract<Vector3r> vector(given);
+	if (!vector.check() && !(PySequence_Check(given.ptr()) && py::len(given) == 3))
+		throw std::invalid_argument("GrainLoop.setWall: slide of a wall for spheres is a vector (x, y, z) [m/s]");
+	for (int k = 0; k < 3; ++k) slide[k] = py::extract<Real>(given[k]);
+	return slide;
+}
+
 /// setWall(side, position=..., velocity=... | pressure=..., mass=..., ...): what is not said stays as it is.
 py::object set_wall(const py::tuple& arguments, const py::dict& keywords)
 {
 	GrainLoop& loop = py::extract<GrainLoop&>(arguments[0]);
 	if (py::len(arguments) != 2)
 		throw std::invalid_argument("GrainLoop.setWall takes a side, then keywords: setWall('y_low', position=0)");
-	loop::Wall wall;
-	wall.side = loop::side_named(py::extract<std::string>(arguments[1]));
+	loop::Wall<3> wall;
+	wall.side = loop.side_named(py::extract<std::string>(arguments[1]));
 	bool known = false;
-	for (const loop::Wall& other : loop.walls())
+	for (const loop::Wall<3>& other : loop.walls())
 		if (other.side == wall.side) wall = other, known = true;
 	if (!known && !keywords.has_key("position"))
 		throw std::invalid_argument(
-			std::string("GrainLoop.setWall: a new wall needs a position [m], got none for ") + loop::name_of(wall.side));
+			"GrainLoop.setWall: a new wall needs a position [m], got none for " + loop::name_of(wall.side));
 	if (keywords.has_key("velocity") && keywords.has_key("pressure"))
 		throw std::invalid_argument("GrainLoop.setWall: a wall has a velocity or a pressure, got both");
 	const py::list items = keywords.items();
 	for (long k = 0; k < py::len(items); ++k) {
 		const std::string key = py::extract<std::string>(items[k][0]);
+		if (key == "slide") {
+			wall.slide = slide_of(items[k][1], wall.side, loop.dimensions);
+			continue;
+		}
 		const Real value = py::extract<Real>(items[k][1]);
 		if (key == "position")
 			wall.position = value;
 		else if (key == "velocity")
 			wall.velocity = value, wall.pressed = false;
-		else if (key == "slide")
-			wall.slide = value;
 		else if (key == "pressure")
 			wall.pressure = value, wall.pressed = true;
 		else if (key == "mass")
@@ -46,20 +63,21 @@ py::object set_wall(const py::tuple& arguments, const py::dict& keywords)
 	return {};
 }
 
-void remove_wall(GrainLoop& loop, const std::string& side) { loop.remove_wall(loop::side_named(side)); }
+void remove_wall(GrainLoop& loop, const std::string& side) { loop.remove_wall(loop.side_named(side)); }
 
 py::dict walls(GrainLoop& loop)
 {
-	const Running stepper(loop);
-	const loop::Scene& scene = stepper->settings();
+	const Running running(loop);
+	const bool plane = loop.dimensions == 2;
 	py::dict all;
-	for (const loop::Wall& w : scene.walls) {
-		const Real length = loop::wall_length(scene, w);
+	for (const loop::Wall<3>& w : running->walls()) {
+		const Real extent = running->extent_of(w);
 		py::dict wall;
-		wall["position"] = w.position, wall["velocity"] = w.velocity, wall["slide"] = w.slide;
-		wall["force"] = py::make_tuple(w.force_x, w.force_y);
-		wall["length"] = length;
-		wall["measuredPressure"] = length > 0 ? w.outward() * w.force() / length : NAN;
+		wall["position"] = w.position, wall["velocity"] = w.velocity;
+		wall["slide"] = plane ? py::object(w.slide[1 - w.axis()]) : py::make_tuple(w.slide[0], w.slide[1], w.slide[2]);
+		wall["force"] = plane ? py::make_tuple(w.force[0], w.force[1]) : py::make_tuple(w.force[0], w.force[1], w.force[2]);
+		wall[plane ? "length" : "area"] = extent;
+		wall["measuredPressure"] = extent > 0 ? w.outward() * w.force[w.axis()] / extent : NAN;
 		wall["pressure"] = w.pressed ? py::object(w.pressure) : py::object();
 		wall["mass"] = w.mass, wall["damping"] = w.damping, wall["speedLimit"] = w.speed_limit;
 		all[loop::name_of(w.side)] = wall;
@@ -67,22 +85,28 @@ py::dict walls(GrainLoop& loop)
 	return all;
 }
 
+/// Those with flat walls: solids stand among presentContacts.
 py::dict wall_contacts(GrainLoop& loop)
 {
-	const Running stepper(loop);
-	const std::vector<loop::Contact> all = stepper->wall_contacts();
-	py::dict table = contact_table(all, loop.bodies().grain_id);
+	const Running running(loop);
+	std::vector<loop::SeenContact> at_walls;
 	py::list side;
-	for (const loop::Contact& c : all) side.append(std::string(loop::name_of(stepper->settings().walls[c.second].side)));
+	for (const loop::SeenContact& c : running->surface_contacts()) {
+		if (c.j >= 0) continue;
+		at_walls.push_back(c);
+		side.append(loop::name_of(loop::Side(-2 - c.j)));
+	}
+	py::dict table = contact_table(at_walls, loop.dimensions);
+	py::delitem(table, py::object("j"));
 	table["side"] = side;
 	return table;
 }
 
-Real area_fraction(GrainLoop& loop) { return loop::area_fraction(Running(loop)->settings()); }
+Real filled_fraction(GrainLoop& loop) { return Running(loop)->filled_fraction(); }
 
 void set_load(GrainLoop& loop, int body, const Vector3r& force)
 {
-	const Running stepper(loop);
+	const Running running(loop);
 	loop.set_load(body, force);
 }
 
@@ -93,19 +117,23 @@ void bind_walls(GrainLoopClass& cls)
 	cls.def("setWall", py::raw_function(set_wall, 2),
 		"setWall(side, position=, velocity= or pressure=, slide=, mass=, damping=, speedLimit=): a flat wall on the side "
 		"'x_low', 'x_high',\n"
-		"'y_low' or 'y_high'; what is not said stays as it is. Grains meet it as a frozen grain of infinite radius and mass.\n"
-		"position [m], velocity along its axis and slide along itself [m/s]; or pressure inwards [N/m], under which it moves as\n"
-		"mass [kg] dv/dt = F - pressure length - damping [kg/s] v with |v| <= speedLimit [m/s].\n"
+		"'y_low', 'y_high', for spheres also 'z_low' or 'z_high'; what is not said stays as it is. Grains meet it as a frozen "
+		"grain of infinite radius and mass.\n"
+		"position [m], velocity along its axis and slide along itself [m/s] (for spheres a vector); or pressure inwards [N/m]\n"
+		"([N/m^2] for spheres), under which it moves as mass [kg] dv/dt = F - pressure length - damping [kg/s] v with |v| <= "
+		"speedLimit [m/s].\n"
 		"Raises ValueError with the rule for what cannot be.");
 	cls.def("removeWall", remove_wall, (py::arg("side")), "Take the wall on this side away.");
 	cls.add_property("walls", walls,
-		"side -> position [m], velocity, slide [m/s], force of the grains (x, y) [N], length [m], measuredPressure [N/m], and "
+		"side -> position [m], velocity, slide [m/s], force of the grains [N], length [m] (area [m^2]), measuredPressure [N/m] "
+		"([N/m^2]), and "
 		"what setWall set");
 	cls.def("wallContacts", wall_contacts,
 		"Contacts with walls as arrays, as contacts() with the wall's side in place of j; normal outwards, forces on the wall.");
-	cls.add_property("areaFraction", area_fraction,
-		"areas of all disks that are not frozen over the area between walls or periodic sides [-]; overlapping beads count "
-		"twice");
+	cls.add_property("areaFraction", filled_fraction,
+		"areas of all disks (volumes of all spheres) that are not frozen over that of the box between walls or periodic sides "
+		"[-];\n"
+		"overlapping beads count twice");
 	cls.def("setLoad", set_load, (py::arg("body"), py::arg("force")),
 		"A constant force [N] on the free directions of a clump or disk: a wall of frozen disks under a pressure is a clump, "
 		"free along one axis.");

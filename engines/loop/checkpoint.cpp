@@ -1,5 +1,8 @@
-/// Checkpoint files: atomic, checksummed, versioned; and what of a Stepper goes into one.
+/// Checkpoint files: atomic, checksummed, versioned.
 #include "engines/loop/checkpoint.hpp"
+
+#include "engines/geometry/section.hpp"
+#include "engines/solids/recipe.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -8,8 +11,6 @@
 #include <iterator>
 #include <sstream>
 #include <unistd.h>
-
-#include "engines/loop/stepper.hpp"
 
 namespace graindrive::loop {
 
@@ -120,53 +121,21 @@ void visit_law(Unpacker& unpack, laws::ContactLaw& law)
 	}
 }
 
-void Stepper::save(const std::string& path, const std::string& companion)
+template <int D>
+geometry::SharedSurface<D> surface_of(const std::string& recipe)
 {
-	if (body_forces_known) throw std::runtime_error("checkpoint " + path + ": a step is under way; save between steps");
-	Packer pack;
-	pack(companion);
-	const State now = snapshot();
-	visit_state(pack, now);
-	pack(bool(energy_ledger()));
-	if (energy_ledger()) energy_ledger()->visit(pack);
-	write_checkpoint(path, pack.bytes);
+	try {
+		const geometry::SharedSurface<3> whole = solids::surface_of(recipe);
+		if constexpr (D == 2)
+			return std::make_shared<geometry::Section>(whole);
+		else
+			return whole;
+	} catch (const std::invalid_argument& refusal) {
+		throw std::runtime_error(std::string("checkpoint: ") + refusal.what());
+	}
 }
 
-std::unique_ptr<Stepper> Stepper::restore(const std::string& path, int threads, std::string* companion)
-{
-	const std::string body = read_checkpoint(path);
-	Unpacker unpack(body);
-	std::string words;
-	unpack(words);
-	if (companion) *companion = words;
-	State saved;
-	visit_state(unpack, saved);
-	saved.scene.threads = threads;
-	auto stepper = std::make_unique<Stepper>(saved.scene);
-	stepper->state = std::move(saved);
-	stepper->resume();
-	bool tracked = false;
-	unpack(tracked);
-	stepper->track_energy(tracked);
-	if (tracked) stepper->energy_ledger()->visit(unpack);
-	return stepper;
-}
-
-/// The state as it is between steps, springs among it.
-State Stepper::snapshot()
-{
-	if (state.selections > 0) pairs.keep_slips();
-	return state;
-}
-
-/// What follows from a state that was put in the place of another.
-void Stepper::resume()
-{
-	for (std::uint32_t at = 0; at < n_grains; ++at) row_of[state.index_of[at]] = at;
-	measure_reach();
-	if (state.selections == 0) return;
-	lay_out_pairs();
-	find_neighbours();
-}
+template geometry::SharedSurface<2> surface_of<2>(const std::string&);
+template geometry::SharedSurface<3> surface_of<3>(const std::string&);
 
 }  // namespace graindrive::loop

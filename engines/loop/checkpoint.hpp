@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "engines/laws/registry.hpp"
+#include "engines/loop/scene.hpp"
 
 namespace graindrive::loop {
 
-constexpr std::uint64_t checkpoint_version = 7;
+constexpr std::uint64_t checkpoint_version = 8;
 
 /// What a file holds, in the 16 letters that it begins with.
 enum class Contents { loop, yade_scene };
@@ -31,6 +32,10 @@ std::string read_companion(const std::string& path);
 
 /// What a file says that it holds; a loop where it says nothing that is known.
 Contents contents_of(const std::string& path);
+
+/// The surface that a recipe makes, in the plane the section of one in space.
+template <int D>
+geometry::SharedSurface<D> surface_of(const std::string& recipe);
 
 /// Plain numbers and arrays of them, one behind the other.
 class Packer {
@@ -99,5 +104,22 @@ private:
 void visit_law(Packer& pack, const laws::ContactLaw& law);
 /// @throws std::runtime_error naming a law that this build does not have as the file has it
 void visit_law(Unpacker& unpack, laws::ContactLaw& law);
+
+/// Solids as the recipes of their surfaces.
+template <int D>
+void visit_solids(Packer& pack, const std::vector<Solid<D>>& solids)
+{
+	pack(std::uint64_t(solids.size()));
+	for (const Solid<D>& solid : solids) pack(solid.body), pack(solid.recipe);
+}
+/// @throws std::runtime_error for a recipe that this build cannot make a surface of
+template <int D>
+void visit_solids(Unpacker& unpack, std::vector<Solid<D>>& solids)
+{
+	std::uint64_t count = 0;
+	unpack(count);
+	solids.resize(count);
+	for (Solid<D>& solid : solids) unpack(solid.body), unpack(solid.recipe), solid.shape = surface_of<D>(solid.recipe);
+}
 
 }  // namespace graindrive::loop

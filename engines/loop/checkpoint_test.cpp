@@ -21,11 +21,11 @@ protected:
 	const graindrive::test::TemporaryFile file;
 	const std::string path = file.path();
 
-	static Scene busy()
+	static Scene<2> busy()
 	{
-		Scene scene = crowd(14, 11, 2);
-		RigidBody body;
-		body.x = 7, body.y = 7, body.mass = 3, body.inertia = 1, body.responds_y = true, body.spin = 1;
+		Scene<2> scene = crowd(14, 11, 2);
+		RigidBody<2> body;
+		body.place[0] = 7, body.place[1] = 7, body.mass = 3, body.inertia = 1, body.responds[1] = true, body.spin = 1;
 		scene.bodies = { body };
 		for (const std::size_t i : { 100u, 101u }) scene.grains[i].body = 0;
 		return scene;
@@ -34,7 +34,7 @@ protected:
 	std::string refusal() const
 	{
 		try {
-			Stepper::restore(path);
+			Stepper<2>::restore(path);
 		} catch (const std::runtime_error& error) {
 			return error.what();
 		}
@@ -54,28 +54,28 @@ protected:
 TEST_F(Checkpoint, a_continued_run_has_the_bits_of_one_never_stopped)
 {
 	for (const Precision precision : { Precision::double_, Precision::single }) {
-		Scene scene = busy();
+		Scene<2> scene = busy();
 		scene.precision = precision;
-		Stepper straight(scene), first(scene);
+		Stepper<2> straight(scene), first(scene);
 		straight.step(900);
 		first.step(457);
 		first.save(path, "the caller's words");
 		std::string words;
-		const auto second = Stepper::restore(path, 3, &words);
+		const auto second = Stepper<2>::restore(path, 3, &words);
 		EXPECT_EQ(words, "the caller's words");
 		EXPECT_EQ(second->steps_done(), 457);
 		second->step(443);
 		first.step(443);
 		EXPECT_TRUE(same_bits(straight, *second));
 		EXPECT_TRUE(same_bits(straight, first));  // saving changes nothing
-		EXPECT_EQ(straight.bodies()[0].y, second->bodies()[0].y);
+		EXPECT_EQ(straight.bodies()[0].place[1], second->bodies()[0].place[1]);
 		EXPECT_EQ(straight.searches_done(), second->searches_done());
 	}
 }
 
 TEST_F(Checkpoint, damaged_and_foreign_files_are_refused_with_the_reason)
 {
-	Stepper loop(busy());
+	Stepper<2> loop(busy());
 	loop.step(10);
 	loop.save(path);
 	const std::string good = contents();
@@ -119,7 +119,7 @@ TEST_F(Checkpoint, a_law_is_kept_by_its_name_with_every_constant)
 
 TEST_F(Checkpoint, a_failed_write_leaves_the_old_file)
 {
-	Stepper loop(busy());
+	Stepper<2> loop(busy());
 	EXPECT_THROW(loop.save("/nonexistent-folder/checkpoint"), std::runtime_error);
 	loop.compute_body_forces();
 	EXPECT_THROW(loop.save(path), std::runtime_error);  // in the middle of a step

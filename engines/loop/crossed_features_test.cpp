@@ -19,18 +19,18 @@ struct Features {
 	bool friction, rotation, gravity, periodic_x, periodic_y, frozen, damping;
 };
 
-Scene scene_with(const Features& f)
+Scene<2> scene_with(const Features& f)
 {
-	Scene s = crowd(side, 11);
+	Scene<2> s = crowd(side, 11);
 	s.law = every_law[f.law];
 	s.friction = f.friction, s.rotation = f.rotation;
-	if (f.gravity) s.gravity_x = 0.3, s.gravity_y = -1;
-	s.box.periodic_x = f.periodic_x, s.box.periodic_y = f.periodic_y;
+	if (f.gravity) s.gravity[0] = 0.3, s.gravity[1] = -1;
+	s.cell.periodic[0] = f.periodic_x, s.cell.periodic[1] = f.periodic_y;
 	if (f.damping) s.damping = 0.3, s.damps_gravity = f.periodic_x;
 	if (!f.frozen) return s;
 	s.bodies.push_back({});
 	s.bodies[0].frozen = true;
-	for (int i = 0; i < side; ++i) s.grains[i].body = 0, s.grains[i].vx = s.grains[i].vy = s.grains[i].spin = 0;
+	for (int i = 0; i < side; ++i) s.grains[i].body = 0, s.grains[i].velocity[0] = s.grains[i].velocity[1] = s.grains[i].spin = 0;
 	return s;
 }
 
@@ -41,7 +41,7 @@ void cross(Visitor&& visit)
 	for (int law = 0; law < 5; ++law)
 		for (int bits = 0; bits < 64; ++bits) {
 			const auto on = [&](int bit) { return bool(bits >> bit & 1); };
-			visit(Features{ law, on(0), on(1), on(2), on(3), on(4), on(5), on(0) ^ on(1) ^ on(2) ^ on(3) ^ on(4) ^ on(5) });
+			visit(Features{ law, on(0), on(1), on(2), on(3), on(4), on(5), bool(on(0) ^ on(1) ^ on(2) ^ on(3) ^ on(4) ^ on(5)) });
 		}
 }
 
@@ -59,17 +59,17 @@ TEST(CrossedFeatures, follow_the_plain_loop_on_threads_and_in_single_precision)
 	int crossed = 0;
 	cross([&](const Features& f) {
 		SCOPED_TRACE(name_of(f));
-		Scene scene = scene_with(f);
-		Stepper one(scene);
+		Scene<2> scene = scene_with(f);
+		Stepper<2> one(scene);
 		PlainLoop plain(scene);
 		scene.threads = crossed++ % 7 == 0 ? 3 : 1;  // waiting threads cost a busy machine much; 7 is prime to the others
-		Stepper three(scene);
+		Stepper<2> three(scene);
 		scene.threads = 1;
 		scene.precision = Precision::single;
-		Stepper single(scene);
+		Stepper<2> single(scene);
 		for (int k = 0; k < steps; ++k) plain.step();
 		one.step(steps), three.step(steps), single.step(steps);
-		const auto from_plain = [&](const Stepper& loop) {
+		const auto from_plain = [&](const Stepper<2>& loop) {
 			return largest_difference(
 				scene, [&](std::size_t i) { return loop.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
 		};
@@ -84,11 +84,11 @@ TEST(CrossedFeatures, go_on_from_a_checkpoint_to_the_last_bit)
 	const graindrive::test::TemporaryFile file;
 	cross([&](const Features& f) {
 		SCOPED_TRACE(name_of(f));
-		Stepper straight(scene_with(f)), stopped(scene_with(f));
+		Stepper<2> straight(scene_with(f)), stopped(scene_with(f));
 		straight.step(steps);
 		stopped.step(steps / 2);
 		stopped.save(file.path());
-		const auto resumed = Stepper::restore(file.path(), 2);
+		const auto resumed = Stepper<2>::restore(file.path(), 2);
 		resumed->step(steps - steps / 2);
 		EXPECT_TRUE(same_bits(straight, *resumed));
 	});

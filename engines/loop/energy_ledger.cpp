@@ -14,7 +14,8 @@ double booked(Halves now, double& pending) { return std::exchange(pending, now.a
 }  // namespace
 
 /// Of one interval, over all contacts.
-struct EnergyLedger::Sums {
+template <int D>
+struct EnergyLedger<D>::Sums {
 	double elastic_normal = 0, elastic_tangential = 0;  // energies at the step
 	Halves normal_damping, tangential_damping;
 	double friction = 0, opening = 0, stiffening = 0;
@@ -22,7 +23,18 @@ struct EnergyLedger::Sums {
 	double turning = 0;       // tangential work that differs because the contact turned
 };
 
-EnergyLedger::Past EnergyLedger::meet(const MetContact& c, const Past& before, Sums& sums) const
+/// Into the plane of another normal.
+template <int D>
+typename EnergyLedger<D>::Past EnergyLedger<D>::turned(Past before, const Vec<D>& n)
+{
+	for (Tangent<D>* vector : { &before.spring_force, &before.slip, &before.moved_after })
+		*vector = turned_along(*vector, before.n, n);
+	before.n = n;
+	return before;
+}
+
+template <int D>
+typename EnergyLedger<D>::Past EnergyLedger<D>::meet(const MetContact<D>& c, const Past& before, Sums& sums) const
 {
 	const laws::Squeezed<Real> squeezed{ c.overlap, c.effective_radius, c.effective_mass };
 	const laws::Terms<Real> terms = std::visit([&](const auto& l) { return l.terms(squeezed); }, law);
@@ -32,45 +44,50 @@ EnergyLedger::Past EnergyLedger::meet(const MetContact& c, const Past& before, S
 	sums.elastic_work += before.elastic_after + terms.elastic * c.v_n_before * half;
 	sums.normal_damping.before += normal_dashpot * c.v_n_before * half;
 	sums.normal_damping.after += normal_dashpot * c.v_n_after * half;
-	Past next{ c.key, 0, 0, 0, 0, terms.elastic * c.v_n_after * half };
+	Past next{ c.key, c.n, {}, 0, {}, {}, terms.elastic * c.v_n_after * half };
 	if (!with_friction) return next;
 
-	const laws::Kinematics<Real, Real> contact{ c.overlap, c.v_n_before, c.v_t_before, c.effective_radius, c.effective_mass, dt };
-	const auto response = std::visit([&](const auto& l) { return l(contact, c.slip_before); }, law);
-	const double dashpot = response.slipping ? 0 : terms.tangential_dashpot * c.v_t_before;
+	const auto contact = kinematics<D>(
+		{ c.n, c.overlap }, RelativeMotion<D>{ c.v_n_before, c.v_t_before }, c.effective_radius, c.effective_mass, dt);
+	const auto response = std::visit([&](const auto& l) { return answer_of(l(contact, for_law(c.slip_before))); }, law);
+	const Tangent<D> dashpot = response.slipping ? Tangent<D>{} : terms.tangential_dashpot * c.v_t_before;
 	next.spring_force = -response.tangential - dashpot;
 	next.stiffness = terms.tangential_stiffness;
 	next.slip = response.slip;
 	next.moved_after = c.v_t_after * dt;
-	const double moved = c.v_t_before * dt;
-	const double stretched = before.stiffness * before.slip + next.stiffness * next.slip;
-	sums.elastic_tangential += std::visit([&](const auto& l) { return tangential_energy(l, terms, next.slip); }, law);
-	sums.tangential_damping.before += dashpot * c.v_t_before * half;
-	sums.tangential_damping.after += dashpot * c.v_t_after * half;
-	sums.friction += 0.5 * (before.spring_force + next.spring_force) * moved - 0.5 * stretched * (next.slip - c.slip_before);
-	sums.stiffening += 0.5 * before.slip * next.slip * (next.stiffness - before.stiffness);
-	sums.turning += 0.5 * before.spring_force * (moved - before.moved_after);
+	const Tangent<D> moved = c.v_t_before * dt;
+	const Tangent<D> stretched = before.stiffness * before.slip + next.stiffness * next.slip;
+	sums.elastic_tangential += std::visit([&](const auto& l) { return tangential_energy(l, terms, for_law(next.slip)); }, law);
+	sums.tangential_damping.before += inner(dashpot, c.v_t_before) * half;
+	sums.tangential_damping.after += inner(dashpot, c.v_t_after) * half;
+	sums.friction +=
+		inner(0.5 * (before.spring_force + next.spring_force), moved) - inner(0.5 * stretched, next.slip - c.slip_before);
+	sums.stiffening += inner(0.5 * before.slip, next.slip) * (next.stiffness - before.stiffness);
+	sums.turning += inner(0.5 * before.spring_force, moved - before.moved_after);
 	return next;
 }
 
-void EnergyLedger::part(const Past& before, Sums& sums) const
+template <int D>
+void EnergyLedger<D>::part(const Past& before, Sums& sums) const
 {
 	sums.elastic_work += before.elastic_after;
-	sums.friction += 0.5 * before.spring_force * before.moved_after;
-	sums.opening += 0.5 * before.stiffness * before.slip * before.slip;
+	sums.friction += inner(0.5 * before.spring_force, before.moved_after);
+	sums.opening += inner(0.5 * before.stiffness * before.slip, before.slip);
 }
 
-void EnergyLedger::book(std::vector<MetContact>& contacts, const LedgerMotion& motion)
+template <int D>
+void EnergyLedger<D>::book(std::vector<MetContact<D>>& contacts, const LedgerMotion& motion)
 {
-	std::sort(contacts.begin(), contacts.end(), [](const MetContact& a, const MetContact& b) { return a.key < b.key; });
+	std::sort(contacts.begin(), contacts.end(), [](const MetContact<D>& a, const MetContact<D>& b) { return a.key < b.key; });
 	Sums sums;
 	std::vector<Past> next;
 	next.reserve(contacts.size());
 	auto old = past.begin();
-	for (const MetContact& c : contacts) {
+	for (MetContact<D>& c : contacts) {
 		for (; old != past.end() && old->key < c.key; ++old) part(*old, sums);
 		const bool lasting = old != past.end() && old->key == c.key;
-		next.push_back(meet(c, lasting ? *old : Past{}, sums));
+		if (lasting) c.slip_before = turned_along(c.slip_before, old->n, c.n);
+		next.push_back(meet(c, lasting ? turned(*old, c.n) : Past{}, sums));
 		old += lasting;
 	}
 	for (; old != past.end(); ++old) part(*old, sums);
@@ -111,5 +128,8 @@ void EnergyLedger::book(std::vector<MetContact>& contacts, const LedgerMotion& m
 	}
 	now.time_step += now.elastic_normal - last.elastic_normal + sums.elastic_work + sums.turning;
 }
+
+template class EnergyLedger<2>;
+template class EnergyLedger<3>;
 
 }  // namespace graindrive::loop

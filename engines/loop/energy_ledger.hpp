@@ -1,6 +1,6 @@
 /// The energy ledger: where the energy of a scene is, where it came from and where it went, at the steps of the leapfrog.
 ///
-/// At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
+/// In space what is remembered of a contact turns with its normal. At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
 ///
 ///   K_n = sum 1/2 m v-.v+,   K_n - K_{n-1} = sum 1/2 F_{n-1}.v dt + 1/2 F_n.v dt,  v = v_{n-1/2} that of the interval between them
 ///
@@ -22,7 +22,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engines/loop/kernel.hpp"
+#include "engines/loop/pair_geometry.hpp"
 
 namespace graindrive::loop {
 
@@ -32,11 +32,14 @@ struct Halves {
 };
 
 /// A contact at a step: with the velocities before and after it.
+template <int D>
 struct MetContact {
 	std::uint64_t key;  ///< of the pair
 	double overlap, effective_radius, effective_mass;
-	double v_n_before, v_n_after, v_t_before, v_t_after;  ///< at the step's normal
-	double slip_before;                                   ///< tangential spring that the step began with
+	Vec<D> n;                      ///< the step's normal
+	double v_n_before, v_n_after;  ///< at the step's normal
+	Tangent<D> v_t_before, v_t_after;
+	Tangent<D> slip_before;  ///< tangential spring that the step began with
 };
 
 /// All that is no contact.
@@ -65,12 +68,13 @@ struct Energies {
 	}
 };
 
+template <int D>
 class EnergyLedger {
 public:
 	EnergyLedger(const ContactLaw& law, bool friction, double dt) : law(law), with_friction(friction), dt(dt) {}
 
 	/// Books one step. Sorts the contacts by key, so that sums do not depend on where they lie.
-	void book(std::vector<MetContact>& contacts, const LedgerMotion& motion);
+	void book(std::vector<MetContact<D>>& contacts, const LedgerMotion& motion);
 
 	/// From here on the ledger explains the motion by another law; for tests of the ledger itself.
 	void suppose(const ContactLaw& other) { law = other; }
@@ -91,8 +95,12 @@ private:
 	/// What the next step must know of a contact.
 	struct Past {
 		std::uint64_t key;
-		double spring_force, stiffness, slip;  // T, k_t, s
-		double moved_after, elastic_after;     // v_t+ dt; half of the normal spring's work in the coming interval
+		Vec<D> n;
+		Tangent<D> spring_force;  // T
+		double stiffness;         // k_t
+		Tangent<D> slip;          // s
+		Tangent<D> moved_after;   // v_t+ dt
+		double elastic_after;     // half of the normal spring's work in the coming interval
 	};
 	struct Pending {
 		double normal_damping = 0, tangential_damping = 0, falling = 0, walls = 0, loads = 0;
@@ -109,7 +117,8 @@ private:
 	double fallen = 0;
 
 	struct Sums;
-	Past meet(const MetContact& contact, const Past& before, Sums& sums) const;
+	Past meet(const MetContact<D>& contact, const Past& before, Sums& sums) const;
+	static Past turned(Past before, const Vec<D>& n);
 	void part(const Past& before, Sums& sums) const;
 };
 

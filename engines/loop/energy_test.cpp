@@ -14,50 +14,50 @@ using namespace graindrive::loop::test;
 namespace {
 
 /// The wiggle paper's law and time step: a settled bed in a box of frozen disks, with a clump that is shaken in x and free in y.
-Scene wiggle_bed()
+Scene<2> wiggle_bed()
 {
-	Scene scene;
+	Scene<2> scene;
 	scene.law = laws::HertzHistory<Real>{ 2e6, 2.46e6, 2500, 2500, 0.1 };
 	scene.dt = 1e-4;
-	scene.gravity_y = -1;
-	scene.box = { 0, 16, 0, 0, true, false };
+	scene.gravity[1] = -1;
+	scene.cell = { { 0, 0 }, { 16, 0 }, { true, false } };
 	scene.bodies.resize(2);
 	scene.bodies[0].frozen = true;
-	RigidBody& clump = scene.bodies[1];
-	clump.x = 8, clump.y = 6, clump.mass = 8, clump.inertia = 8;
-	clump.responds_y = true;
+	RigidBody<2>& clump = scene.bodies[1];
+	clump.place[0] = 8, clump.place[1] = 6, clump.mass = 8, clump.inertia = 8;
+	clump.responds[1] = true;
 	for (int k = 0; k < 16; ++k) scene.grains.push_back(disk(k + 0.5, 0, 0.5, 0)), scene.grains.back().mass = HUGE_VAL;
 	for (int k = 0; k < 12; ++k) {
 		scene.grains.push_back(disk(8 + std::cos(k * pi / 6), 6 + std::sin(k * pi / 6), 0.25, 1));
 		scene.grains.back().mass = clump.mass;
 	}
-	const Scene sizes = crowd(16, 7, 0.1);
+	const Scene<2> sizes = crowd(16, 7, 0.1);
 	for (std::size_t i = 0; i < 16 * 12; ++i) {
-		Grain g = sizes.grains[i];
-		g.y = 0.5 + 1.05 * g.y;
-		if (std::hypot(g.x - 8, g.y - 6) > 1.8) scene.grains.push_back(g);
+		Grain<2> g = sizes.grains[i];
+		g.place[1] = 0.5 + 1.05 * g.place[1];
+		if (std::hypot(g.place[0] - 8, g.place[1] - 6) > 1.8) scene.grains.push_back(g);
 	}
 	return scene;
 }
 
-void shake(Stepper& loop, long steps)
+void shake(Stepper<2>& loop, long steps)
 {
 	const double amplitude = 0.5, period = 1, dt = loop.settings().dt;
 	for (long k = 0; k < steps; ++k) {
 		const double t = loop.time();
 		loop.compute_body_forces();
-		loop.bodies()[1].vx = amplitude * (std::sin(2 * pi * (t + dt) / period) - std::sin(2 * pi * t / period)) / dt;
+		loop.bodies()[1].velocity[0] = amplitude * (std::sin(2 * pi * (t + dt) / period) - std::sin(2 * pi * t / period)) / dt;
 		loop.step();
 	}
 }
 
-double closure(const Stepper& loop)
+double closure(const Stepper<2>& loop)
 {
 	const Energies& e = loop.energy_ledger()->energies();
 	return std::abs(e.residual()) / e.turnover;
 }
 
-double time_step_share(const Stepper& loop)
+double time_step_share(const Stepper<2>& loop)
 {
 	const Energies& e = loop.energy_ledger()->energies();
 	return std::abs(e.time_step) / e.turnover;
@@ -67,20 +67,20 @@ double time_step_share(const Stepper& loop)
 constexpr double round_off = 1e-12;
 
 /// A bed between walls of which one slides, one is pressed down, shaken by a clump that is free to fall.
-Scene walled_bed(const ContactLaw& law)
+Scene<2> walled_bed(const ContactLaw& law)
 {
-	Scene scene = crowd(12, 5, 0.5);
+	Scene<2> scene = crowd(12, 5, 0.5);
 	scene.law = law;
-	scene.gravity_y = -1, scene.gravity_x = 0.2;
-	scene.box.periodic_y = false;
-	Wall floor, lid;
-	floor.position = 0, floor.slide = 0.3;
+	scene.gravity[1] = -1, scene.gravity[0] = 0.2;
+	scene.cell.periodic[1] = false;
+	Wall<2> floor, lid;
+	floor.position = 0, floor.slide[0] = 0.3;
 	lid.side = Side::y_high, lid.position = 12;
 	lid.pressed = true, lid.pressure = 2, lid.mass = 5, lid.damping = 10;
 	scene.walls = { floor, lid };
-	RigidBody clump;
-	clump.x = 6, clump.y = 6, clump.mass = 3, clump.inertia = 0.5, clump.load_y = -3;
-	clump.responds_x = clump.responds_y = clump.responds_spin = true;
+	RigidBody<2> clump;
+	clump.place[0] = 6, clump.place[1] = 6, clump.mass = 3, clump.inertia = 0.5, clump.load[1] = -3;
+	clump.responds[0] = clump.responds[1] = clump.turns[0] = true;
 	scene.bodies = { clump };
 	for (const std::size_t i : { 77u, 78u }) scene.grains[i].body = 0, scene.grains[i].mass = clump.mass;
 	return scene;
@@ -90,7 +90,7 @@ Scene walled_bed(const ContactLaw& law)
 
 TEST(Energy, closes_at_the_wiggle_papers_settings)
 {
-	Stepper loop(wiggle_bed());
+	Stepper<2> loop(wiggle_bed());
 	shake(loop, 10000);
 	loop.track_energy(true);
 	shake(loop, 20000);
@@ -110,9 +110,9 @@ TEST(Energy, closes_at_the_wiggle_papers_settings)
 TEST(Energy, what_leapfrog_adds_shrinks_with_the_square_of_the_time_step)
 {
 	const auto share = [](double dt) {
-		Scene scene = wiggle_bed();
+		Scene<2> scene = wiggle_bed();
 		scene.dt = dt;
-		Stepper loop(scene);
+		Stepper<2> loop(scene);
 		shake(loop, std::lround(1 / dt));
 		loop.track_energy(true);
 		shake(loop, std::lround(2 / dt));
@@ -129,7 +129,7 @@ TEST(Energy, closes_with_every_law_with_walls_loads_and_gravity_along_a_period)
 {
 	for (const ContactLaw& law : { ContactLaw(hertz(0.3, 500)), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)),
 			 ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
-		Stepper loop(walled_bed(law));
+		Stepper<2> loop(walled_bed(law));
 		loop.track_energy(true);
 		loop.step(10000);
 		const Energies& e = loop.energy_ledger()->energies();
@@ -142,10 +142,10 @@ TEST(Energy, closes_with_every_law_with_walls_loads_and_gravity_along_a_period)
 TEST(Energy, walls_give_what_their_own_motion_took)
 {
 	// Work of a pressed lid on the grains = work of the pressure less its own kinetic energy and its dashpot's heat, in the lid's own leapfrog.
-	Scene scene = walled_bed(hertz(0.3, 500));
-	scene.walls[0].slide = 0;
+	Scene<2> scene = walled_bed(hertz(0.3, 500));
+	scene.walls[0].slide = {};
 	scene.walls[1].damping = 0;
-	Stepper loop(scene);
+	Stepper<2> loop(scene);
 	loop.track_energy(true);
 	loop.step(1);
 	const auto lid = [&] { return loop.settings().walls[1]; };
@@ -159,7 +159,7 @@ TEST(Energy, walls_give_what_their_own_motion_took)
 TEST(Energy, a_lost_spring_a_secret_push_and_a_wrong_law_do_not_close)
 {
 	const auto run = [](auto&& meddle) {
-		Stepper loop(wiggle_bed());
+		Stepper<2> loop(wiggle_bed());
 		shake(loop, 10000);
 		loop.track_energy(true);
 		shake(loop, 5000);
@@ -167,26 +167,26 @@ TEST(Energy, a_lost_spring_a_secret_push_and_a_wrong_law_do_not_close)
 		shake(loop, 5000);
 		return closure(loop);
 	};
-	EXPECT_LT(run([](Stepper&) {}), round_off);
-	EXPECT_GT(run([](Stepper& loop) { loop.bodies()[1].vy += 0.01; }), 1e-6);
-	EXPECT_GT(run([](Stepper& loop) { loop.forget_springs(); }), 1e-6);
+	EXPECT_LT(run([](Stepper<2>&) {}), round_off);
+	EXPECT_GT(run([](Stepper<2>& loop) { loop.bodies()[1].velocity[1] += 0.01; }), 1e-6);
+	EXPECT_GT(run([](Stepper<2>& loop) { loop.forget_springs(); }), 1e-6);
 	using Law = laws::HertzHistory<Real>;
 	for (Real Law::*constant : { &Law::k_n, &Law::k_t, &Law::gamma_n, &Law::gamma_t, &Law::mu }) {
 		Law off = std::get<Law>(wiggle_bed().law);
 		off.*constant *= 1.001;
-		EXPECT_GT(run([&](Stepper& loop) { loop.energy_ledger()->suppose(off); }), 1e-6);
+		EXPECT_GT(run([&](Stepper<2>& loop) { loop.energy_ledger()->suppose(off); }), 1e-6);
 	}
 }
 
 TEST(Energy, an_elastic_gas_keeps_its_energy_to_second_order_in_dt)
 {
 	const auto drift = [](double dt) {
-		Scene scene = crowd(10, 7, 0.5);
+		Scene<2> scene = crowd(10, 7, 0.5);
 		scene.law = hertz(0, 0);
 		scene.friction = false;
 		scene.dt = dt;
-		for (Grain& g : scene.grains) g.radius *= 0.97, g.mass *= 0.97 * 0.97;
-		Stepper loop(scene);
+		for (Grain<2>& g : scene.grains) g.radius *= 0.97, g.mass *= 0.97 * 0.97;
+		Stepper<2> loop(scene);
 		loop.track_energy(true);
 		double largest = 0;
 		for (int k = 0; k < 200; ++k) {
@@ -207,17 +207,17 @@ TEST(Energy, an_elastic_gas_keeps_its_energy_to_second_order_in_dt)
 TEST(Energy, the_ledger_does_not_touch_the_motion_and_has_the_same_bits_on_threads_and_after_a_checkpoint)
 {
 	const graindrive::test::TemporaryFile file;
-	Scene scene = walled_bed(hertz(0.3, 500));
-	Stepper plain(scene), one(scene);
+	Scene<2> scene = walled_bed(hertz(0.3, 500));
+	Stepper<2> plain(scene), one(scene);
 	one.track_energy(true);
 	plain.step(3000), one.step(3000);
 	EXPECT_TRUE(same_bits(plain, one));
 	scene.threads = 2;
-	Stepper two(scene);
+	Stepper<2> two(scene);
 	two.track_energy(true);
 	two.step(1500);
 	two.save(file.path());
-	const auto restored = Stepper::restore(file.path());
+	const auto restored = Stepper<2>::restore(file.path());
 	two.step(1500), restored->step(1500);
 	const Energies a = one.energy_ledger()->energies(), b = two.energy_ledger()->energies(),
 				   c = restored->energy_ledger()->energies();
@@ -227,7 +227,7 @@ TEST(Energy, the_ledger_does_not_touch_the_motion_and_has_the_same_bits_on_threa
 
 TEST(Energy, the_time_step_must_stay)
 {
-	Stepper loop(wiggle_bed());
+	Stepper<2> loop(wiggle_bed());
 	loop.track_energy(true);
 	EXPECT_TRUE(mentions(complaint([&] { loop.set_time_step(5e-5); }), "time step must stay"));
 }

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "engines/laws/critical_step.hpp"
-#include "engines/loop/stepper.hpp"
+#include "engines/laws/sphere_terms.hpp"
+#include "engines/loop/pair_geometry.hpp"
 
 namespace graindrive::loop {
 
@@ -19,10 +20,14 @@ void require(bool holds, const Words&... words)
 	if (!holds) throw std::invalid_argument(sentence(words...));
 }
 
-void check_grain(const Scene& scene, std::size_t i)
+bool is_finite(double number) { return std::isfinite(number); }
+bool is_finite(const Vec<3>& v) { return geometry::is_finite(v); }
+
+template <int D>
+void check_grain(const Scene<D>& scene, std::size_t i)
 {
-	const Grain& g = scene.grains[i];
-	require(std::isfinite(g.x) && std::isfinite(g.y) && std::isfinite(g.vx) && std::isfinite(g.vy) && std::isfinite(g.spin),
+	const Grain<D>& g = scene.grains[i];
+	require(geometry::is_finite(g.place) && geometry::is_finite(g.velocity) && is_finite(g.spin),
 		"position, velocity and spin must be finite, got a number that is not in grain ", i);
 	require(g.radius > 0 && std::isfinite(g.radius), "radius must be positive, got ", g.radius, " in grain ", i);
 	require(g.body >= free_grain && g.body < static_cast<int>(scene.bodies.size()), "a grain's body must be -1 (free) or one of ",
@@ -31,18 +36,36 @@ void check_grain(const Scene& scene, std::size_t i)
 		"mass must be positive, and finite for a free grain, got ", g.mass, " in grain ", i);
 }
 
-void check_body(const RigidBody& body, std::size_t b)
+bool is_positive(double inertia) { return inertia > 0; }
+bool is_positive(const Vec<3>& inertia) { return inertia[0] > 0 && inertia[1] > 0 && inertia[2] > 0; }
+
+/// In space a body that may turn about some axes of the world and not about others is known where one is left, or where it is a ball.
+void check_turning(const RigidBody<2>&, std::size_t) {}
+void check_turning(const RigidBody<3>& body, std::size_t b)
 {
-	require(body.mass > 0 || !(body.responds_x || body.responds_y), "a body that responds to forces needs a positive mass, got ",
-		body.mass, " in body ", b);
-	require(body.inertia > 0 || !body.responds_spin, "a body that responds to torques needs a positive moment of inertia, got ",
-		body.inertia, " in body ", b);
+	const int free = body.turns[0] + body.turns[1] + body.turns[2];
+	const Vec<3>& i = body.inertia;
+	require(free != 2 || (i[0] == i[1] && i[1] == i[2]),
+		"a body whose moments of inertia differ may turn about all axes, one or none, got two in body ", b,
+		"; block one more rotation, or none");
 }
 
-void check_side(bool periodic, double low, double high, const char* name)
+template <int D>
+void check_body(const RigidBody<D>& body, std::size_t b)
 {
-	require(!periodic || (std::isfinite(low) && std::isfinite(high) && high > low), "a periodic box must have ", name,
-		"_high above ", name, "_low, got ", low, " and ", high);
+	require(body.mass > 0 || !body.responds_somewhere(), "a body that responds to forces needs a positive mass, got ", body.mass,
+		" in body ", b);
+	require(!body.turns_somewhere() || is_positive(body.inertia),
+		"a body that responds to torques needs a positive moment of inertia, got one that is not in body ", b);
+	check_turning(body, b);
+}
+
+template <int D>
+void check_side(const Cell<D>& cell, int k)
+{
+	const char name = "xyz"[k];
+	require(!cell.periodic[k] || (std::isfinite(cell.low[k]) && std::isfinite(cell.high[k]) && cell.high[k] > cell.low[k]),
+		"a periodic box must have ", name, "_high above ", name, "_low, got ", cell.low[k], " and ", cell.high[k]);
 }
 
 laws::Terms<Real> terms_of(const ContactLaw& law, const laws::Squeezed<Real>& contact)
@@ -51,7 +74,9 @@ laws::Terms<Real> terms_of(const ContactLaw& law, const laws::Squeezed<Real>& co
 }
 
 /// Of the contact's two directions, each with what yields in it; infinite where nothing does.
-double critical_step_of(const Scene& scene, const laws::Terms<Real>& k, double inverse_pressed_mass, double inverse_sliding_mass)
+template <int D>
+double critical_step_of(
+	const Scene<D>& scene, const laws::Terms<Real>& k, double inverse_pressed_mass, double inverse_sliding_mass)
 {
 	double smallest = HUGE_VAL;
 	if (inverse_pressed_mass > 0) smallest = laws::critical_step(k.stiffness, k.dashpot, 1 / inverse_pressed_mass);
@@ -61,32 +86,53 @@ double critical_step_of(const Scene& scene, const laws::Terms<Real>& k, double i
 	return smallest;
 }
 
-/// What a member of a body may touch: a grain, or a member of another body.
-struct Partner {
+/// What a member of a body may touch: a grain, a member of another body, or a solid.
+struct Yielding {
 	double radius, inverse_mass;  // [m], [1/kg]
 	double inverse_sliding_mass;  // of the surface, along the contact [1/kg]
 	double inverse_pressed_mass;  // against the contact [1/kg]
 };
 
-/// A member's part in a contact: its body yields by moving and by turning, with a lever of at most its distance from the centre.
-Partner as_partner(const RigidBody& body, const Grain& member)
+double smallest_moment(double inertia) { return inertia; }
+double smallest_moment(const Vec<3>& i) { return std::min({ i[0], i[1], i[2] }); }
+
+/// A body yields by moving and by turning, with a lever of at most its farthest point's distance from the centre.
+template <int D>
+Yielding yielding(const RigidBody<D>& body, double arm, double radius, double inverse_mass)
 {
-	const double arm = std::hypot(member.x - body.x, member.y - body.y), reach = arm + member.radius;
-	const double moving = (body.responds_x || body.responds_y) ? 1 / body.mass : 0,
-				 turning = body.responds_spin ? 1 / body.inertia : 0;
-	return { member.radius, std::isfinite(member.mass) ? 1 / member.mass : 0, moving + reach * reach * turning,
-		moving + arm * arm * turning };
+	const double reach = arm + radius;
+	const double moving = body.responds_somewhere() ? 1 / body.mass : 0,
+				 turning = body.turns_somewhere() ? 1 / smallest_moment(body.inertia) : 0;
+	return { radius, inverse_mass, moving + reach * reach * turning, moving + arm * arm * turning };
 }
 
-Partner as_partner(const Scene& scene, const Grain& grain)
+template <int D>
+Yielding yielding(const Scene<D>& scene, const Grain<D>& grain)
 {
-	if (grain.body != free_grain) return as_partner(scene.bodies[grain.body], grain);
+	if (grain.body != free_grain) {
+		const RigidBody<D>& body = scene.bodies[grain.body];
+		return yielding(body, length(grain.place - body.place), grain.radius, std::isfinite(grain.mass) ? 1 / grain.mass : 0);
+	}
 	const double spin_response = scene.rotation ? scene.spin_response : 0;
 	return { grain.radius, 1 / grain.mass, (1 + spin_response) / grain.mass, 1 / grain.mass };
 }
 
+/// A surface is a plane to a grain: it has no radius of its own.
+template <int D>
+Yielding yielding(const Scene<D>& scene, const Solid<D>& solid)
+{
+	const RigidBody<D>& body = scene.bodies[solid.body];
+	const geometry::Bounds<D> box = solid.shape->bounds();
+	double far = 0, farthest_grain = 0;
+	for (int k = 0; k < D; ++k) far = std::hypot(far, std::max(std::abs(box.low[k]), std::abs(box.high[k])));
+	for (const Grain<D>& grain : scene.grains)
+		farthest_grain = std::max(farthest_grain, length(grain.place - body.place) + grain.radius);
+	return yielding(body, std::min(far, farthest_grain), 0, body.responds_somewhere() ? 1 / body.mass : 0);
+}
+
 /// The grains that decide: the lightest and the largest free one, and the largest member of each body.
-std::vector<std::size_t> telling_grains(const Scene& scene)
+template <int D>
+std::vector<std::size_t> telling_grains(const Scene<D>& scene)
 {
 	constexpr std::size_t none = -1;
 	std::size_t lightest = none, largest = none;
@@ -95,7 +141,7 @@ std::vector<std::size_t> telling_grains(const Scene& scene)
 		return than == none || scene.grains[i].radius > scene.grains[than].radius;
 	};
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) {
-		const Grain& g = scene.grains[i];
+		const Grain<D>& g = scene.grains[i];
 		if (g.body != free_grain) {
 			if (larger(i, of_body[g.body])) of_body[g.body] = i;
 			continue;
@@ -110,58 +156,77 @@ std::vector<std::size_t> telling_grains(const Scene& scene)
 	return all;
 }
 
-double critical_step_of(const Scene& scene, const Partner& one, const Partner& other, double overlap)
+template <int D>
+double critical_step_of(const Scene<D>& scene, const Yielding& one, const Yielding& other, double overlap)
 {
-	const double depth = overlap * std::min(one.radius, other.radius);
-	const laws::Terms<Real> terms = terms_of(scene.law,
-		{ depth, laws::effective_radius(one.radius, other.radius), laws::effective_mass(one.inverse_mass + other.inverse_mass) });
+	const bool plane = one.radius == 0 || other.radius == 0;
+	const double depth = overlap * (plane ? std::max(one.radius, other.radius) : std::min(one.radius, other.radius)),
+				 radius = plane ? std::max(one.radius, other.radius) : laws::effective_radius(one.radius, other.radius);
+	const laws::Terms<Real> terms =
+		terms_of(scene.law, { depth, radius, laws::effective_mass(one.inverse_mass + other.inverse_mass) });
 	return critical_step_of(scene, terms, one.inverse_pressed_mass + other.inverse_pressed_mass,
 		one.inverse_sliding_mass + other.inverse_sliding_mass);
 }
 
 /// A pair is met through one image: the nearest. Where a second image could touch as well, a contact would be lost.
-void check_images(const Scene& scene)
+template <int D>
+void check_images(const Scene<D>& scene)
 {
 	const std::vector<std::size_t> telling = telling_grains(scene);
-	const auto check = [&](bool periodic, double length, const char* axis) {
-		if (!periodic) return;
+	const char* grain = D == 2 ? "disk" : "sphere";
+	for (int k = 0; k < D; ++k) {
+		if (!scene.cell.periodic[k]) continue;
+		const double period = scene.cell.length(k);
 		for (std::size_t i = 0; i < scene.grains.size(); ++i) {
-			const Grain& member = scene.grains[i];
+			const Grain<D>& member = scene.grains[i];
 			if (member.body == free_grain) continue;
 			for (const std::size_t j : telling) {
-				const Grain& other = scene.grains[j];
+				const Grain<D>& other = scene.grains[j];
 				if (other.body == member.body) continue;
 				if (other.body != free_grain && scene.bodies[other.body].frozen && scene.bodies[member.body].frozen) continue;
-				require(2 * (member.radius + other.radius) <= length,
-					"a disk of a body must not touch another disk through two of "
-					"its images: the period in ",
-					axis, " must be at least ", 2 * (member.radius + other.radius), " m, got ", length,
-					"; lengthen it, or make the body of smaller disks (grain ", i, ")");
+				require(2 * (member.radius + other.radius) <= period, "a ", grain, " of a body must not touch another ", grain,
+					" through two of its images: the period in ", "xyz"[k], " must be at least ",
+					2 * (member.radius + other.radius), " m, got ", period, "; lengthen it, or make the body of smaller ", grain,
+					"s (grain ", i, ")");
 			}
 		}
-	};
-	check(scene.box.periodic_x, scene.box.x_high - scene.box.x_low, "x");
-	check(scene.box.periodic_y, scene.box.y_high - scene.box.y_low, "y");
+	}
+}
+
+/// What only disks may have.
+void check_dimension(const Scene<2>&) {}
+void check_dimension(const Scene<3>& scene)
+{
+	require(std::visit([](const auto& law) { return laws::is_for_spheres(law); }, scene.law),
+		"the loop over spheres knows the laws ", laws::listed(laws::names_where(laws::is_for_spheres), " and "), ", got ",
+		laws::name_of(scene.law), "; take one of those, or YADE's own loop");
+	require(scene.damping == 0, "the loop over spheres knows no non-viscous damping, got damping ", scene.damping,
+		"; set it to 0, or use YADE's own loop");
+	require(!scene.cell.sheared(), "the loop knows no sheared cell yet, got one that is; set across to -1");
+	require(scene.grains.size() < 30'000'000, "a scene may have at most 30 million spheres, got ", scene.grains.size());
 }
 
 }  // namespace
 
-double critical_time_step_of_bodies(const Scene& scene, double overlap)
+template <int D>
+double critical_time_step_of_bodies(const Scene<D>& scene, double overlap)
 {
 	double smallest = HUGE_VAL;
 	const std::vector<std::size_t> telling = telling_grains(scene);
-	for (const Grain& member : scene.grains) {
-		if (member.body == free_grain) continue;
-		const Partner one = as_partner(scene.bodies[member.body], member);
-		if (one.inverse_sliding_mass == 0) continue;  // it yields to nothing
+	const auto meet_all = [&](const Yielding& one, int body) {
+		if (one.inverse_sliding_mass == 0) return;  // it yields to nothing
 		for (const std::size_t other : telling)
-			if (scene.grains[other].body != member.body)
-				smallest = std::min(smallest, critical_step_of(scene, one, as_partner(scene, scene.grains[other]), overlap));
-	}
+			if (scene.grains[other].body != body)
+				smallest = std::min(smallest, critical_step_of(scene, one, yielding(scene, scene.grains[other]), overlap));
+	};
+	for (const Grain<D>& member : scene.grains)
+		if (member.body != free_grain) meet_all(yielding(scene, member), member.body);
+	for (const Solid<D>& solid : scene.solids) meet_all(yielding(scene, solid), solid.body);
 	return smallest;
 }
 
-void check_scene(const Scene& scene)
+template <int D>
+void check_scene(const Scene<D>& scene)
 {
 	require(!scene.grains.empty(), "a scene must have at least one grain, got none");
 	require(scene.dt > 0 && std::isfinite(scene.dt), "time step must be positive, got ", scene.dt);
@@ -169,8 +234,9 @@ void check_scene(const Scene& scene)
 	require(scene.skin >= 0, "skin must not be negative (0 lets the loop choose), got ", scene.skin);
 	require(scene.spin_response > 0, "m R^2/I of the grains must be positive, got ", scene.spin_response);
 	require(scene.damping >= 0 && scene.damping < 1, "damping must lie in [0, 1), got ", scene.damping);
-	check_side(scene.box.periodic_x, scene.box.x_low, scene.box.x_high, "x");
-	check_side(scene.box.periodic_y, scene.box.y_low, scene.box.y_high, "y");
+	require(geometry::is_finite(scene.gravity), "gravity must be finite, got a number that is not");
+	for (int k = 0; k < D; ++k) check_side(scene.cell, k);
+	check_dimension(scene);
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) check_body(scene.bodies[b], b);
 	laws::require_in_range(scene.law);
@@ -179,16 +245,17 @@ void check_scene(const Scene& scene)
 		", got ", scene.dt, "; lower it or take softer grains");
 	const double of_bodies = critical_time_step_of_bodies(scene);
 	require(scene.dt <= of_bodies,
-		"time step must not exceed the critical one of the lightest body (clump, large, watched or driven "
-		"disk) at its stiffest contact, ",
-		of_bodies, ", got ", scene.dt, "; lower it, take softer grains, or give the body more mass and inertia");
+		"time step must not exceed the critical one of the lightest body (clump, large, watched or driven ",
+		D == 2 ? "disk" : "sphere, solid", ") at its stiffest contact, ", of_bodies, ", got ", scene.dt,
+		"; lower it, take softer grains, or give the body more mass and inertia");
 	check_images(scene);
 }
 
-double critical_time_step(const Scene& scene, double overlap)
+template <int D>
+double critical_time_step(const Scene<D>& scene, double overlap)
 {
 	double smallest = HUGE_VAL;
-	for (const Grain& g : scene.grains) {
+	for (const Grain<D>& g : scene.grains) {
 		if (g.body != free_grain) continue;
 		const double mass = g.mass / 2;
 		const laws::Terms<Real> terms = terms_of(scene.law, { overlap * g.radius, g.radius / 2, mass });
@@ -196,5 +263,12 @@ double critical_time_step(const Scene& scene, double overlap)
 	}
 	return smallest;
 }
+
+template double critical_time_step(const Scene<2>&, double);
+template double critical_time_step(const Scene<3>&, double);
+template double critical_time_step_of_bodies(const Scene<2>&, double);
+template double critical_time_step_of_bodies(const Scene<3>&, double);
+template void check_scene(const Scene<2>&);
+template void check_scene(const Scene<3>&);
 
 }  // namespace graindrive::loop

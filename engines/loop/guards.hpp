@@ -1,6 +1,7 @@
 /// Checks of a scene before it starts, and the words of a guard that trips while it runs.
 #pragma once
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "engines/loop/scene.hpp"
@@ -18,19 +19,19 @@ std::string sentence(const Words&... words)
 }
 
 /// @throws std::invalid_argument naming the rule, the number and the way out
-void check_scene(const Scene& scene);
+template <int D>
+void check_scene(const Scene<D>& scene);
 
 /// Largest stable time step of the stiffest, lightest pair of free grains at an overlap of `overlap` radii [s].
 ///
 /// omega dt < 2 (sqrt(1 + zeta^2) - zeta) for the normal motion and for sliding, in which two grains move with m_eff/(1 + m R^2/I):
-/// a third of m_eff for disks. Hertz stiffness grows with the overlap, so it is taken where the overlap guard stops a run.
-double critical_time_step(const Scene& scene, double overlap = 0.1);
+/// a third of m_eff for disks, two sevenths for spheres. Hertz stiffness grows with the overlap, so it is taken where the overlap guard stops a run.
+template <int D>
+double critical_time_step(const Scene<D>& scene, double overlap = 0.1);
 
 /// The same for rigid bodies that respond, each against its stiffest partner: in translation, and in turning with the longest lever
 /// that a contact can have, the member's distance from the centre (and its radius, for sliding); infinite where none responds [s].
-double critical_time_step_of_bodies(const Scene& scene, double overlap = 0.1);
-
-/// Walls lie where they may, and their grains bear the time step. @throws std::invalid_argument naming the wall and the rule
-void check_walls(const Scene& scene);
+template <int D>
+double critical_time_step_of_bodies(const Scene<D>& scene, double overlap = 0.1);
 
 }  // namespace graindrive::loop

@@ -11,13 +11,13 @@ using namespace graindrive::loop::test;
 namespace {
 
 /// One grain above two frozen ones with a gap between them, falling.
-Scene gap()
+Scene<2> gap()
 {
-	Scene s;
+	Scene<2> s;
 	s.law = hertz();
 	s.dt = 1e-3;
-	s.gravity_y = -1;
-	RigidBody base;
+	s.gravity[1] = -1;
+	RigidBody<2> base;
 	base.frozen = true;
 	s.bodies = { base };
 	s.grains = { disk(-2, 0, 0.5, 0), disk(2, 0, 0.5, 0), disk(0, 1) };
@@ -25,7 +25,7 @@ Scene gap()
 }
 
 /// What the loop says when it stops within so many steps; empty if it does not.
-std::string last_words(Stepper& loop, long steps)
+std::string last_words(Stepper<2>& loop, long steps)
 {
 	try {
 		loop.step(steps);
@@ -39,25 +39,25 @@ std::string last_words(Stepper& loop, long steps)
 
 TEST(Box, a_grain_that_falls_through_a_base_is_lost_three_diameters_below_it)
 {
-	Stepper loop(gap());
+	Stepper<2> loop(gap());
 	loop.speak_of({ 10, 11, 12 }, 5000);
 	const std::string words = last_words(loop, 10000);
 	EXPECT_TRUE(mentions(words, "grain 12 at")) << words;
 	EXPECT_TRUE(mentions(words, "has left the box")) << words;
 	EXPECT_TRUE(mentions(words, "step " + std::to_string(5000 + loop.steps_done()))) << words;
 	const double lost = -0.5 - 3, g = 1, dt = 1e-3, fall = 1 - lost;
-	EXPECT_LT(loop.grain(2).y, lost);
-	EXPECT_GT(loop.grain(2).y, lost - std::sqrt(2 * g * (fall + 1)) * 101 * dt);  // looked for every 100 steps
+	EXPECT_LT(loop.grain(2).place[1], lost);
+	EXPECT_GT(loop.grain(2).place[1], lost - std::sqrt(2 * g * (fall + 1)) * 101 * dt);  // looked for every 100 steps
 }
 
 TEST(Box, bounds_take_the_place_of_the_base)
 {
-	Stepper loop(gap());
-	Guards& guards = loop.guarding();
+	Stepper<2> loop(gap());
+	Guards<2>& guards = loop.guarding();
 	guards.bounded = true;  // equal numbers: no bounds
 	EXPECT_EQ(last_words(loop, 5000), "");
-	EXPECT_LT(loop.grain(2).y, -10);
-	guards.y_low = -20, guards.y_high = 10;
+	EXPECT_LT(loop.grain(2).place[1], -10);
+	guards.low[1] = -20, guards.high[1] = 10;
 	const std::string words = last_words(loop, 5000);
 	EXPECT_TRUE(mentions(words, "its y is below -20, the bounds that were set")) << words;
 }
@@ -65,39 +65,39 @@ TEST(Box, bounds_take_the_place_of_the_base)
 TEST(Box, a_grain_whose_centre_is_beyond_a_wall_is_named_with_the_wall)
 {
 	for (const Side side : { Side::x_low, Side::x_high, Side::y_low, Side::y_high }) {
-		Scene s = gap();
-		Wall wall;
+		Scene<2> s = gap();
+		Wall<2> wall;
 		wall.side = side;
 		wall.position = 3 * wall.outward();
 		s.walls = { wall };
-		s.grains[2] = wall.across_x() ? disk(3.01 * wall.outward(), 3) : disk(0, 3.01 * wall.outward());
-		Stepper loop(s);
+		s.grains[2] = wall.axis() == 0 ? disk(3.01 * wall.outward(), 3) : disk(0, 3.01 * wall.outward());
+		Stepper<2> loop(s);
 		const std::string words = last_words(loop, 1);
-		EXPECT_TRUE(mentions(words, std::string("wall ") + name_of(side))) << words;
+		EXPECT_TRUE(mentions(words, "wall " + name_of(side))) << words;
 		EXPECT_TRUE(mentions(words, "step 0: grain 2 at") && mentions(words, "has left the box")) << words;
 	}
 }
 
 TEST(Box, what_moves_where_nothing_bounds_it_goes_on)
 {
-	Scene sideways = gap(), weightless = gap(), led = gap();
-	sideways.grains[2].vx = 50, sideways.grains[2].vy = 50;
-	weightless.gravity_y = 0, weightless.grains[2].vy = -50;
-	RigidBody plunger;
-	plunger.y = 1, plunger.vy = -50;
+	Scene<2> sideways = gap(), weightless = gap(), led = gap();
+	sideways.grains[2].velocity[0] = 50, sideways.grains[2].velocity[1] = 50;
+	weightless.gravity[1] = 0, weightless.grains[2].velocity[1] = -50;
+	RigidBody<2> plunger;
+	plunger.place[1] = 1, plunger.velocity[1] = -50;
 	led.bodies.push_back(plunger);
 	led.grains[2].body = 1;
-	for (const Scene& scene : { sideways, weightless, led }) {
-		Stepper loop(scene);
+	for (const Scene<2>& scene : { sideways, weightless, led }) {
+		Stepper<2> loop(scene);
 		EXPECT_EQ(last_words(loop, 1000), "");
 	}
 }
 
 TEST(Box, periodic_sides_have_no_end)
 {
-	Scene s = gap();
-	s.box = { -4, 4, -4, 4, true, true };
-	s.grains[2].vx = -3;
-	Stepper loop(s);
+	Scene<2> s = gap();
+	s.cell = { { -4, -4 }, { 4, 4 }, { true, true } };
+	s.grains[2].velocity[0] = -3;
+	Stepper<2> loop(s);
 	EXPECT_EQ(last_words(loop, 10000), "");
 }

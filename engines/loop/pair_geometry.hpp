@@ -1,57 +1,142 @@
-/// The geometry of contacts as the loop's rows and walls have it, for all but the kernels.
+/// The geometry of contacts as the loop's rows, walls and solids have it, for all but the kernels.
 ///
 /// Kernels take the same from packs of pairs, with one reciprocal in place of divisions: that differs in the last bit.
 #pragma once
 #include "engines/laws/contact.hpp"
 #include "engines/laws/pair_geometry.hpp"
-#include "engines/loop/pair_search.hpp"
+#include "engines/loop/state.hpp"
 
 namespace graindrive::loop {
 
-using Plane = laws::Planar<double>;
-using Placement = laws::Placement<Plane>;
+/// What is tangential: a signed number along t = z x n in the plane, a vector in space.
+template <int D>
+using Tangent = Spin<D>;
 
-inline Placement placement(const GrainRow& a, const GrainRow& b, const Box& box)
-{
-	const Separation d = separation(a, b, box);
-	return laws::placement(Plane{ d.x, d.y }, a.radius, b.radius);
-}
+inline double length(const Vec<2>& v) { return std::hypot(v[0], v[1]); }
+inline double length(const Vec<3>& v) { return geometry::norm(v); }
+inline double length(double number) { return std::abs(number); }
 
-inline Placement placement(const GrainRow& row, const Wall& wall)
-{
-	const double outward = wall.outward();
-	return { { wall.across_x() ? outward : 0, wall.across_x() ? 0 : outward },
-		row.radius + outward * ((wall.across_x() ? row.x : row.y) - wall.position) };
-}
+inline double inner(double a, double b) { return a * b; }
+inline double inner(const Vec<3>& a, const Vec<3>& b) { return geometry::dot(a, b); }
 
-/// What of a row or a wall makes it move against another: its velocity, and that of its surface.
-struct SurfaceMotion {
-	double vx, vy, surface_speed;  ///< [m/s]
+// The laws take Eigen's vectors.
+inline double for_law(double number) { return number; }
+inline Vector3r for_law(const Vec<3>& v) { return { v[0], v[1], v[2] }; }
+inline double from_law(double number) { return number; }
+inline Vec<3> from_law(const Vector3r& v) { return { v[0], v[1], v[2] }; }
+
+/// Where two grains, or a grain and a surface, touch.
+template <int D>
+struct Placement {
+	Vec<D> normal;   ///< n, from the first to the second [-]
+	double overlap;  ///< [m]; they touch where it is positive
 };
 
-inline SurfaceMotion motion_of(const GrainRow& row) { return { row.vx, row.vy, row.surface_speed }; }
-inline SurfaceMotion motion_of(const Wall& wall) { return { wall.velocity_x(), wall.velocity_y(), 0 }; }
-
-inline laws::RelativeMotion<double, double> relative_motion(const Plane& n, const SurfaceMotion& a, const SurfaceMotion& b)
+/// b - a by the nearest image [m].
+template <int D>
+Vec<D> separation(const Row<D>& a, const Row<D>& b, const Cell<D>& cell)
 {
-	return laws::relative_motion<double>(n, { b.vx - a.vx, b.vy - a.vy }, a.surface_speed + b.surface_speed);
+	return cell.nearest(b.x - a.x).at;
 }
 
-inline double effective_radius(const GrainRow& a, const GrainRow& b) { return laws::effective_radius(a.radius, b.radius); }
-inline double effective_mass(const GrainRow& a, const GrainRow& b)
+template <int D>
+Placement<D> placement(const Row<D>& a, const Row<D>& b, const Cell<D>& cell)
 {
-	return laws::effective_mass(a.inverse_mass + b.inverse_mass);
+	const Vec<D> d = separation<D>(a, b, cell);
+	const double distance = length(d);
+	return { d / distance, a.radius + b.radius - distance };
 }
-/// A wall is a grain of infinite radius and mass.
-inline double effective_radius(const GrainRow& row, const Wall&) { return row.radius; }
-inline double effective_mass(const GrainRow& row, const Wall&) { return laws::effective_mass(row.inverse_mass); }
 
-/// What the law is told, of two grains or of a grain and a wall.
-template <class Other>
-laws::Kinematics<double, double> kinematics(const Placement& at, const GrainRow& row, const Other& other, double dt)
+template <int D>
+Placement<D> placement(const Row<D>& row, const Wall<D>& wall)
 {
-	const auto motion = relative_motion(at.normal, motion_of(row), motion_of(other));
-	return { at.overlap, motion.normal, motion.tangential, effective_radius(row, other), effective_mass(row, other), dt };
+	const double outward = wall.outward();
+	Placement<D> at{ {}, row.radius + outward * (row.x[wall.axis()] - wall.position) };
+	at.normal[wall.axis()] = outward;
+	return at;
+}
+
+/// What makes a grain or a surface move against another: the velocity of its centre, and of its surface by its spin [m/s].
+template <int D>
+struct SurfaceMotion {
+	Vec<D> velocity;
+	Spin<D> surface{};
+};
+
+template <class ARow>
+auto motion_of(const ARow& row)
+{
+	return SurfaceMotion < std::is_same_v<ARow, DiskRow> ? 2 : 3 > { row.v, row.surface };
+}
+
+/// v_n, and v_t of the first one's surface against the second's [m/s].
+template <int D>
+struct RelativeMotion {
+	double normal;
+	Tangent<D> tangential;
+};
+
+inline RelativeMotion<2> relative_motion(const Vec<2>& n, const SurfaceMotion<2>& a, const SurfaceMotion<2>& b)
+{
+	const Vec<2> v = b.velocity - a.velocity;
+	const auto motion = laws::relative_motion<double>({ n[0], n[1] }, { v[0], v[1] }, a.surface + b.surface);
+	return { motion.normal, motion.tangential };
+}
+inline RelativeMotion<3> relative_motion(const Vec<3>& n, const SurfaceMotion<3>& a, const SurfaceMotion<3>& b)
+{
+	const Vec<3> v = b.velocity - a.velocity;
+	const double separating = geometry::dot(v, n);
+	return { separating, separating * n - v + geometry::cross(a.surface + b.surface, n) };
+}
+
+/// Force on the first grain [N]: -F_n n + F_t.
+inline Vec<2> force_on_first(const Vec<2>& n, double normal, double tangential)
+{
+	const laws::Planar<double> force = laws::force_on_first(laws::Planar<double>{ n[0], n[1] }, normal, tangential);
+	return { force.x, force.y };
+}
+inline Vec<3> force_on_first(const Vec<3>& n, double normal, const Vec<3>& tangential) { return tangential - normal * n; }
+
+/// The torque of F_t on either grain over its radius, n x F_t [N].
+inline double turning(const Vec<2>&, double tangential) { return tangential; }
+inline Vec<3> turning(const Vec<3>& n, const Vec<3>& tangential) { return geometry::cross(n, tangential); }
+
+/// A tangential vector in the plane of another normal: by the rotation that takes one normal to the other without twist.
+inline double turned_along(double tangential, const Vec<2>&, const Vec<2>&) { return tangential; }
+inline Vec<3> turned_along(const Vec<3>& tangential, const Vec<3>& from, const Vec<3>& to)
+{
+	const double facing = 1 + geometry::dot(from, to);
+	if (!(facing > 1e-9)) return {};  // the normal has turned round: it is another contact
+	return tangential - (geometry::dot(tangential, to) / facing) * (from + to);
+}
+
+/// What a law answers.
+template <int D>
+struct LawAnswer {
+	double normal;                ///< F_n [N]
+	Tangent<D> tangential, slip;  ///< F_t on the first [N]; the spring to keep [m]
+	bool slipping;
+};
+
+template <class Mask>
+LawAnswer<2> answer_of(const laws::Response<double, double, Mask>& r)
+{
+	return { r.normal, r.tangential, r.slip, bool(r.slipping) };
+}
+template <class Mask>
+LawAnswer<3> answer_of(const laws::Response<double, Vector3r, Mask>& r)
+{
+	return { r.normal, from_law(r.tangential), from_law(r.slip), bool(r.slipping) };
+}
+
+/// What the law is told.
+template <int D>
+auto kinematics(
+	const Placement<D>& at, const RelativeMotion<D>& motion, double effective_radius, double effective_mass, double dt)
+{
+	const auto tangential = for_law(motion.tangential);
+	return laws::Kinematics<double, std::decay_t<decltype(tangential)>>{ at.overlap, motion.normal, tangential, effective_radius,
+		effective_mass, dt };
 }
 
 }  // namespace graindrive::loop

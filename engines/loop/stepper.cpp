@@ -1,232 +1,233 @@
-/// One step: lists if anything may have come near, forces of early pairs, the sweep, then bodies.
+/// One step: lists if anything may have come near, forces of early pairs and surfaces, the sweep, then bodies and walls.
 #include "engines/loop/stepper.hpp"
-
-#include "engines/loop/guards.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace graindrive::loop {
 
-Stepper::Stepper(const Scene& scene)
+template <int D>
+Stepper<D>::Stepper(const Scene<D>& scene)
 {
 	state.scene = scene;
 	check_scene(scene);
-	check_walls(scene);
+	check_surfaces(scene);
 	arrange_rows();
-	set_up_kernels();
+	set_up();
 }
 
 /// What follows from the settings alone.
-void Stepper::set_up_kernels()
+template <int D>
+void Stepper<D>::set_up()
 {
-	kernel = choose_kernel({ state.scene.law.index(), state.scene.friction, state.scene.precision });
-	if (!team || team->size() != state.scene.threads) team = std::make_unique<ThreadTeam>(state.scene.threads);
-	data.dt = data.kick = data.drift = state.scene.dt;
-	data.gravity_x = state.scene.gravity_x;
-	data.gravity_y = state.scene.gravity_y;
-	data.spin_response = state.scene.rotation ? state.scene.spin_response : 0;
-	law_in_float = laws::converted<float>(state.scene.law);
-	const auto address = [](const auto& law) -> const void* { return &law; };
-	data.law =
-		state.scene.precision == Precision::single ? std::visit(address, law_in_float) : std::visit(address, state.scene.law);
-	data.damping = state.scene.damping;
-	data.damps_gravity = state.scene.damps_gravity;
-	if (state.scene.box.periodic_x) data.inverse_length_x = 1 / (data.length_x = state.scene.box.x_high - state.scene.box.x_low);
-	if (state.scene.box.periodic_y) data.inverse_length_y = 1 / (data.length_y = state.scene.box.y_high - state.scene.box.y_low);
-	thread_beyond.assign(state.scene.threads, 0);
+	const Scene<D>& scene = state.scene;
+	if (!team || team->size() != scene.threads) team = std::make_unique<ThreadTeam>(scene.threads);
+	thread_beyond.assign(scene.threads, 0);
+	StepMotion<D>& motion = pairs.motion();
+	use_whole_steps();
+	motion.gravity = scene.gravity;
+	motion.spin_response = scene.rotation ? scene.spin_response : 0;
+	motion.damping = scene.damping;
+	motion.damps_gravity = scene.damps_gravity;
+	pairs.set_up();
 }
 
-void Stepper::arrange_rows()
+template <int D>
+void Stepper<D>::use_whole_steps()
 {
-	n_grains = state.scene.grains.size();
-	row_of.resize(n_grains);
-	for (std::uint32_t i = 0; i < n_grains; ++i)
-		if (state.scene.grains[i].body == free_grain) state.index_of.push_back(i);
-	n_free = state.index_of.size();
+	StepMotion<D>& motion = pairs.motion();
+	motion.dt = motion.kick = motion.drift = state.scene.dt;
+}
+
+/// Free grains first, in their order; then members, body by body.
+template <int D>
+void Stepper<D>::arrange_rows()
+{
+	const std::vector<Grain<D>>& grains = state.scene.grains;
+	std::vector<std::vector<std::uint32_t>> members_of(state.scene.bodies.size());
+	for (std::uint32_t i = 0; i < grains.size(); ++i)
+		grains[i].body == free_grain ? state.index_of.push_back(i) : members_of[grains[i].body].push_back(i);
 	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
-		body_members.push_back(state.index_of.size() - n_free);
-		const RigidBody& body = state.scene.bodies[b];
-		for (std::uint32_t i = 0; i < n_grains; ++i) {
-			const Grain& g = state.scene.grains[i];
-			if (g.body != static_cast<int>(b)) continue;
+		const RigidBody<D>& body = state.scene.bodies[b];
+		for (const std::uint32_t i : members_of[b]) {
 			state.index_of.push_back(i);
-			const double dx = g.x - body.x, dy = g.y - body.y, c = std::cos(body.angle), s = std::sin(body.angle);
-			state.members.push_back({ c * dx + s * dy, c * dy - s * dx, 0, 0, static_cast<int>(b) });
+			state.members.push_back({ body.to_frame(grains[i].place), {}, static_cast<int>(b) });
 		}
 		state.body_fixed.push_back(body.frozen);
 	}
-	body_members.push_back(state.members.size());
-	state.rows.resize(n_grains + 2);
-	double sum = 0;
-	for (std::uint32_t at = 0; at < n_grains; ++at) {
-		const Grain& g = state.scene.grains[state.index_of[at]];
-		row_of[state.index_of[at]] = at;
-		state.rows[at] = { g.x, g.y, g.vx, g.vy, g.radius, g.radius * g.spin, 1 / g.mass, 0 };
-		if (at < n_free) largest_free_radius = std::max(largest_free_radius, g.radius);
-		sum += 2 * g.radius;
+	state.derive();
+	state.rows.resize(state.n);
+	if (D == 3) state.inverse_masses.resize(state.n);
+	for (std::uint32_t at = 0; at < state.n; ++at) {
+		const Grain<D>& g = grains[state.index_of[at]];
+		Row<D>& row = state.rows[at] = Row<D>{};
+		row.x = g.place, row.v = g.velocity, row.radius = g.radius, row.surface = g.radius * g.spin;
+		if constexpr (D == 2)
+			row.inverse_mass = 1 / g.mass;
+		else
+			state.inverse_masses[at] = 1 / g.mass;
 	}
-	typical_diameter = sum / n_grains;
-	state.rows[n_grains] = { 0, 0, 0, 0, typical_diameter, 0, 1, 0 };  // a pair that never touches fills up packs
-	state.rows[n_grains + 1] = { 10 * typical_diameter, 0, 0, 0, typical_diameter, 0, 1, 0 };
-	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) place_members(b);
-	measure_reach();
+	pairs.make_dummies();
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) rigid.place_members(b);
 }
 
-/// From the members' places in the body, which stay as they are: a restart must find the same numbers wherever the body has gone.
-void Stepper::measure_reach()
-{
-	body_reach.assign(state.scene.bodies.size(), 0);
-	for (std::size_t m = 0; m < state.members.size(); ++m) {
-		double& reach = body_reach[state.members[m].body];
-		reach = std::max(reach, std::hypot(state.members[m].x, state.members[m].y) + state.rows[n_free + m].radius);
-	}
-}
-
-void Stepper::step(long n)
+template <int D>
+void Stepper<D>::run(const std::function<void(int)>& work)
 {
 	failure = nullptr;
-	team->run([&](int rank) { advance(rank, n); });
+	team->run(work);
 	if (failure) std::rethrow_exception(failure);
 }
 
-void Stepper::set_time_step(double dt)
+template <int D>
+void Stepper<D>::step(long n)
 {
-	if (books)
-		throw std::invalid_argument("the time step must stay while energy is tracked; switch trackEnergy off and on again");
-	Scene changed = state.scene;
-	changed.dt = dt;
-	check_scene(changed);
-	check_walls(changed);
-	state.scene.dt = data.dt = data.kick = data.drift = dt;
+	const bool known = body_forces_known;
+	run([&](int rank) {
+		for (long k = 0; k < n; ++k)
+			if (!one_step(rank, k == 0 && known)) return;
+	});
 }
 
-void Stepper::set_springs(const std::vector<Spring>& springs) { given_springs = springs; }
-
-void Stepper::forget_springs()
-{
-	for (Candidate& pair : state.candidates) pair.slip = 0;
-	pairs.put_back_slips();
-	for (WallTouch& touch : state.wall_touches) touch.slip = 0;
-}
-
-void Stepper::compute_body_forces()
+template <int D>
+void Stepper<D>::compute_body_forces()
 {
 	if (body_forces_known) return;
-	failure = nullptr;
-	prepare();
-	if (failure) std::rethrow_exception(failure);
-	pairs.keep_early_pairs();
-	team->run([&](int rank) { compute_early_pairs(rank); });
-	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-		if (!state.body_fixed[b]) collect_forces(b);
+	run([&](int rank) {
+		if (!prepare(rank)) return;
+		if (rank == 0) pairs.keep_early();
+		team->barrier();
+		pairs.early(rank);
+	});
+	gather_body_forces();
 	body_forces_known = true;
 }
 
-void Stepper::advance(int rank, long n)
+/// Springs and forces of the pairs that were computed early go back to where they were, so that those can be computed again.
+template <int D>
+void Stepper<D>::take_back_body_forces()
 {
-	const bool known = body_forces_known;
-	team->barrier();  // everyone has read it before the first step changes it
-	for (long k = 0; k < n; ++k)
-		if (!one_step(rank, k == 0 && known)) return;
+	if (!body_forces_known) return;
+	pairs.put_back_early();
+	surfaces.take_back();
+	body_forces_known = false;
 }
 
-/// False if the lists could not be made; every thread learns it behind the same barrier.
-bool Stepper::one_step(int rank, bool early_pairs_done)
+template <int D>
+void Stepper<D>::gather_body_forces()
+{
+	pairs.gather_for_members();
+	rigid.collect(pairs);
+	surfaces.add_to_bodies();
+}
+
+/// False if the step could not begin; every thread learns it behind the same barrier.
+template <int D>
+bool Stepper<D>::one_step(int rank, bool early_pairs_done)
 {
 	if (!early_pairs_done) {
-		if (rank == 0) prepare();
-		team->barrier();
-		if (failure) return false;
-		compute_early_pairs(rank);
+		if (!prepare(rank)) return false;
+		pairs.early(rank);
 		team->barrier();
 	}
-	const SweepRange& mine = pairs.sweeps[rank];
-	thread_beyond[rank] = kernel.sweep(data, mine.block_begin, mine.block_end, n_free, mine.pair_begin);
+	thread_beyond[rank] = pairs.sweep(rank);
 	team->barrier();
 	if (rank == 0) finish();
 	team->barrier();
 	return true;
 }
 
-void Stepper::compute_early_pairs(int rank)
+/// All that comes before forces of pairs.
+template <int D>
+bool Stepper<D>::prepare(int rank)
 {
-	const std::uint32_t packs = (pairs.early_end - pairs.early_begin) / pack_alignment;
-	const auto share = [&](int r) {
-		return pairs.early_begin + std::uint32_t(std::uint64_t(packs) * r / state.scene.threads) * pack_alignment;
-	};
-	kernel.pairs(data, share(rank), share(rank + 1), true);
+	if (state.selection_due && !update_lists(rank)) return false;
+	if (rank == 0) look_before();
+	team->barrier();
+	return !failure;
 }
 
-void Stepper::prepare()
+template <int D>
+void Stepper<D>::look_before()
 {
 	try {
-		if (state.selection_due) select();
-		if (!state.scene.walls.empty()) list_wall_touches();
-		if (state.guards.every > 0 && state.steps % state.guards.every == 0) {
-			check_box();
-			check_pairs();
-			check_walls_while_running();
-		}
-		if (!state.scene.walls.empty()) compute_wall_forces();
+		double to_come = 0;
+		for (std::size_t p = 0; p < state.allowed.size() && surfaces.any(); ++p)
+			to_come = std::max(to_come, budgets.way_to_come(p));
+		surfaces.list(to_come);
+		if (state.guards.every > 0 && state.steps % state.guards.every == 0) guards.check(pairs, surfaces);
+		surfaces.compute_forces();
 		hand_outside_forces_over();
-		if (books) remember_for_books();
+		if (books) books->remember(pairs);
 	} catch (...) {
 		failure = std::current_exception();
 	}
 }
 
-void Stepper::finish()
+/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
+template <int D>
+void Stepper<D>::finish()
 {
-	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
-		if (state.body_fixed[b]) continue;
-		if (!body_forces_known) collect_forces(b);
-		move_body(b);
-	}
-	if (!state.scene.walls.empty()) move_walls();
-	if (!state.pushes.empty()) push_grains();
-	if (books) book_energy();
-	spend_budgets();
+	if (!body_forces_known) gather_body_forces();
+	rigid.move();
+	bool sweep_has_done_it = false;
+	if constexpr (D == 2) sweep_has_done_it = pairs.sweep_knows_outside();
+	if (!sweep_has_done_it)
+		surfaces.kick_grains(
+			[&](std::uint32_t row, const Vec<D>& force, const Spin<D>& turning) { kick_grain(row, force, turning); });
+	if (surfaces.any()) surfaces.move();
+	if (!sweep_has_done_it)
+		for (const Push<D>& push : state.pushes) {
+			const std::uint32_t row = state.row_of[push.grain];
+			kick_grain(row, push.force, push.torque / state.rows[row].radius);
+		}
+	if (books) books->book();
+	for (const char beyond : thread_beyond) state.selection_due |= beyond != 0;
+	budgets.spend(pairs.motion().drift);
 	++state.steps;
 	body_forces_known = false;
-	drifted = data.drift;
+	drifted = pairs.motion().drift;
 	laid_out_since_forces = false;
 }
 
-void Stepper::select()
+/// One free grain after the sweep; `turning` is torque over radius [N].
+template <int D>
+void Stepper<D>::kick_grain(std::uint32_t at, const Vec<D>& force, const Spin<D>& turning)
 {
-	if (state.selections > 0) pairs.keep_slips();
-	measure_speeds();
-	allow_travel();
-	if (state.searches == 0 || !(2 * farthest_before_selection() <= state.skin)) {
-		search();
-		measure_speeds();
-		find_neighbours();
-		allow_travel();
-	}
-	std::vector<Reach> reach(n_grains);
-	for (std::uint32_t i = 0; i < n_grains; ++i) {
-		const double budget = state.allowed[party_of(i)];
-		reach[i] = { state.rows[i].radius + budget,
-			state.rows[i].radius + std::max(budget / 2, std::min(budget, smallest_budget())) };
-	}
-	choose_pace(pairs.select(state.rows.data(), state.scene.box, reach));
-	lay_out_pairs();
-	std::fill(state.travelled.begin(), state.travelled.end(), 0);
-	state.selection_due = false;
-	++state.selections;
+	const StepMotion<D>& motion = pairs.motion();
+	Row<D>& row = state.rows[at];
+	const double response = state.inverse_mass(at) * motion.kick;
+	const Vec<D> kick = force * response;
+	row.v += kick;
+	row.x += kick * motion.drift;
+	row.surface += turning * response * motion.spin_response;
+	const std::uint32_t block = state.party_of(at);
+	state.travelled[block] += length(kick) * motion.drift;  // on top of what the sweep has counted
+	state.selection_due |= state.travelled[block] > state.allowed[block];
 }
 
-void Stepper::lay_out_pairs()
+template <>
+void Stepper<2>::hand_outside_forces_over()
 {
-	laid_out_since_forces = state.steps > 0;
-	pairs.lay_out(state.rows.data(), n_free, n_grains, state.scene.threads, state.scene.precision, n_grains);
-	point_at_lists();
+	std::vector<OutsideForce>* outside = pairs.outside_of_sweep();
+	if (!outside) return;
+	surfaces.kick_grains([&](std::uint32_t row, const Vec<2>& force, double turning) {
+		(*outside)[row].force += force;
+		(*outside)[row].turning += turning;
+	});
+	for (const Push<2>& push : state.pushes) {
+		const std::uint32_t row = state.row_of[push.grain];
+		(*outside)[row].force += push.force;
+		(*outside)[row].turning += push.torque / state.rows[row].radius;
+	}
 }
 
-std::size_t Stepper::pairs_selected() const
+template <>
+void Stepper<3>::hand_outside_forces_over()
 {
-	return std::count_if(pairs.place.begin(), pairs.place.end(), [](std::uint32_t at) { return at != 0; });
 }
+
+template class Stepper<2>;
+template class Stepper<3>;
 
 }  // namespace graindrive::loop

@@ -13,9 +13,9 @@ using namespace graindrive::loop::test;
 
 namespace {
 
-double difference_from_plain(const Scene& scene, int steps)
+double difference_from_plain(const Scene<2>& scene, int steps)
 {
-	Stepper fast(scene);
+	Stepper<2> fast(scene);
 	PlainLoop plain(scene);
 	for (int k = 0; k < steps; ++k) plain.step();
 	fast.step(steps);
@@ -32,7 +32,7 @@ TEST(Stepper, follows_the_plain_loop_with_each_law)
 {
 	for (const ContactLaw& law : { ContactLaw(hertz()), ContactLaw(laws::hertz_restitution(2e5, 0.3, 0.7, 0.4)),
 			 ContactLaw(laws::spring_dashpot(1e5, 3e4, 0.8, 0.5)) }) {
-		Scene scene = crowd(9, 1);
+		Scene<2> scene = crowd(9, 1);
 		scene.law = law;
 		EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
 	}
@@ -42,19 +42,19 @@ TEST(Stepper, follows_the_plain_loop_in_every_box)
 {
 	for (const bool x : { false, true })
 		for (const bool y : { false, true }) {
-			Scene scene = crowd(8, 2);
-			scene.box.periodic_x = x, scene.box.periodic_y = y;
-			scene.gravity_y = -1, scene.gravity_x = 0.3;
+			Scene<2> scene = crowd(8, 2);
+			scene.cell.periodic[0] = x, scene.cell.periodic[1] = y;
+			scene.gravity[1] = -1, scene.gravity[0] = 0.3;
 			EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
 		}
 }
 
 TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
 {
-	Scene scene = crowd(9, 3);
-	scene.box.periodic_y = false;
+	Scene<2> scene = crowd(9, 3);
+	scene.cell.periodic[1] = false;
 	for (std::size_t i = 0; i < 9; ++i)
-		scene.grains[i].body = 0, scene.grains[i].vx = scene.grains[i].vy = scene.grains[i].spin = 0;
+		scene.grains[i].body = 0, scene.grains[i].velocity[0] = scene.grains[i].velocity[1] = scene.grains[i].spin = 0;
 	for (std::size_t i = 9; i < scene.grains.size(); i += 7)
 		scene.grains[i].radius *= 0.4;  // small ones have many neighbours' surplus to fold
 	scene.bodies.push_back({});
@@ -64,18 +64,18 @@ TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
 TEST(Stepper, finds_every_pair_where_memory_runs_in_strips)
 {
 	for (const bool y : { false, true }) {
-		Scene scene = crowd(92, 12, 10);  // more cells across than one strip has
-		scene.box.periodic_y = y;
+		Scene<2> scene = crowd(92, 12, 10);  // more cells across than one strip has
+		scene.cell.periodic[1] = y;
 		EXPECT_LT(difference_from_plain(scene, 3), grown_round_off);
 	}
 }
 
 TEST(Stepper, springs_survive_searches_and_sorting)
 {
-	Scene often = crowd(10, 4, 3), seldom = often;
+	Scene<2> often = crowd(10, 4, 3), seldom = often;
 	often.skin = 0.01;
 	seldom.skin = 0.3;
-	Stepper a(often), b(seldom);
+	Stepper<2> a(often), b(seldom);
 	a.step(600), b.step(600);
 	EXPECT_GT(a.searches_done(), 5 * b.searches_done());
 	// Only the order of sums differs; a lost spring would show as 1e-3.
@@ -87,13 +87,13 @@ TEST(Stepper, springs_survive_searches_and_sorting)
 TEST(Stepper, gives_the_same_bits_on_any_number_of_threads_and_in_any_portions)
 {
 	for (const Precision precision : { Precision::double_, Precision::single }) {
-		Scene scene = crowd(16, 5, 2);
+		Scene<2> scene = crowd(16, 5, 2);
 		scene.precision = precision;
-		Stepper one(scene);
+		Stepper<2> one(scene);
 		one.step(300);
 		for (const int threads : { 2, 3, 5 }) {
 			scene.threads = threads;
-			Stepper many(scene);
+			Stepper<2> many(scene);
 			many.step(100), many.step(1), many.step(199);
 			EXPECT_TRUE(same_bits(one, many)) << threads << " threads";
 		}
@@ -104,10 +104,10 @@ TEST(Stepper, shows_before_a_step_the_contacts_that_the_step_will_find)
 {
 	for (const Precision precision : { Precision::double_, Precision::single })
 		for (const int threads : { 1, 2 }) {
-			Scene scene = crowd(16, 5, 2);
+			Scene<2> scene = crowd(16, 5, 2);
 			scene.precision = precision;
 			scene.threads = threads;
-			Stepper looking(scene), plain(scene);
+			Stepper<2> looking(scene), plain(scene);
 			std::size_t seen = 0;
 			for (int k = 0; k < 200; ++k) {
 				const auto before = looking.present_contacts();
@@ -128,12 +128,12 @@ TEST(Stepper, shows_before_a_step_the_contacts_that_the_step_will_find)
 TEST(Stepper, can_be_saved_after_a_look_between_steps_and_goes_on_with_the_same_bits)
 {
 	for (const Precision precision : { Precision::double_, Precision::single }) {
-		Scene scene = crowd(16, 5, 2);
+		Scene<2> scene = crowd(16, 5, 2);
 		scene.precision = precision;
-		Wall wall;
+		Wall<2> wall;
 		wall.side = Side::y_low;  // at y = 0
-		scene.box.periodic_y = false;
-		Stepper looking(scene), plain(scene);
+		scene.cell.periodic[1] = false;
+		Stepper<2> looking(scene), plain(scene);
 		looking.set_wall(wall), plain.set_wall(wall);
 		std::size_t seen = 0, at_wall = 0;
 		for (int k = 0; k < 300; ++k) {
@@ -147,7 +147,7 @@ TEST(Stepper, can_be_saved_after_a_look_between_steps_and_goes_on_with_the_same_
 				ASSERT_EQ(sight.pairs[c].friction, after[c].friction);
 				ASSERT_EQ(sight.pairs[c].slip, after[c].slip);
 			}
-			seen += after.size(), at_wall += sight.walls.size();
+			seen += after.size(), at_wall += sight.surfaces.size();
 		}
 		EXPECT_GT(seen, 1000u);
 		EXPECT_GT(at_wall, 10u);
@@ -157,10 +157,11 @@ TEST(Stepper, can_be_saved_after_a_look_between_steps_and_goes_on_with_the_same_
 
 TEST(Stepper, conserves_momentum)
 {
-	Stepper loop(crowd(12, 6));
+	Stepper<2> loop(crowd(12, 6));
 	const auto momentum = [&] {
 		Vector2r sum(0, 0);
-		for (std::size_t i = 0; i < loop.size(); ++i) sum += loop.grain(i).mass * Vector2r(loop.grain(i).vx, loop.grain(i).vy);
+		for (std::size_t i = 0; i < loop.size(); ++i)
+			sum += loop.grain(i).mass * Vector2r(loop.grain(i).velocity[0], loop.grain(i).velocity[1]);
 		return sum;
 	};
 	const Vector2r before = momentum();
@@ -171,12 +172,12 @@ TEST(Stepper, conserves_momentum)
 
 TEST(Stepper, bounces_without_damping_keep_the_energy)
 {
-	Scene scene = crowd(10, 7, 0.5);
+	Scene<2> scene = crowd(10, 7, 0.5);
 	scene.law = hertz(0, 0);
 	scene.friction = false;
 	scene.dt = 2e-5;
-	for (Grain& g : scene.grains) g.radius *= 0.85, g.mass *= 0.85 * 0.85;  // start apart
-	Stepper loop(scene);
+	for (Grain<2>& g : scene.grains) g.radius *= 0.85, g.mass *= 0.85 * 0.85;  // start apart
+	Stepper<2> loop(scene);
 	const double before = loop.kinetic_energy();
 	double lowest = before, highest = 0;
 	for (int k = 0; k < 4000; ++k) {
@@ -192,22 +193,22 @@ TEST(Stepper, bounces_without_damping_keep_the_energy)
 TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain_is)
 {
 	const auto far_from_near = [](double shift) {
-		Scene scene;
+		Scene<2> scene;
 		scene.law = hertz();
 		scene.dt = 1e-4;
 		scene.precision = Precision::single;
 		scene.grains = { disk(shift, 0), disk(shift + 0.99, 0.1) };
-		scene.grains[0].vx = 1;
-		Stepper loop(scene);
+		scene.grains[0].velocity[0] = 1;
+		Stepper<2> loop(scene);
 		loop.step(200);
-		return loop.grain(0).x - shift;
+		return loop.grain(0).place[0] - shift;
 	};
 	// Contacts see differences of double positions; what is left is float round-off, 6e-8 of an overlap's forces.
 	EXPECT_NEAR(far_from_near(0), far_from_near(300), 1e-6);
-	Scene scene = crowd(10, 9);
-	Stepper twice(scene);
+	Scene<2> scene = crowd(10, 9);
+	Stepper<2> twice(scene);
 	scene.precision = Precision::single;
-	Stepper once(scene);
+	Stepper<2> once(scene);
 	twice.step(100), once.step(100);
 	EXPECT_LT(largest_difference(
 				  scene, [&](std::size_t i) { return once.grain(i); }, [&](std::size_t i) { return twice.grain(i); }),
@@ -216,34 +217,34 @@ TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain
 
 TEST(Stepper, refuses_what_cannot_run_and_says_why)
 {
-	const auto message = [](Scene scene) -> std::string {
+	const auto message = [](Scene<2> scene) -> std::string {
 		try {
-			Stepper{ scene };
+			Stepper<2>{ scene };
 		} catch (const std::invalid_argument& error) {
 			return error.what();
 		}
 		return "";
 	};
-	Scene scene = crowd(4, 1);
+	Scene<2> scene = crowd(4, 1);
 	scene.dt = 1;
 	EXPECT_NE(message(scene).find("critical"), std::string::npos);
 	scene = crowd(4, 1);
 	scene.grains[3].radius = -1;
 	EXPECT_NE(message(scene).find("radius must be positive, got -1 in grain 3"), std::string::npos);
 	scene = crowd(4, 1);
-	scene.box.x_high = 2;
-	Stepper narrow(scene);
+	scene.cell.high[0] = 2;
+	Stepper<2> narrow(scene);
 	EXPECT_THROW(narrow.step(), std::invalid_argument);  // too few cells across
 }
 
 TEST(Stepper, a_deep_overlap_stops_the_run_with_step_and_grain)
 {
-	Scene scene;
+	Scene<2> scene;
 	scene.law = hertz();
 	scene.dt = 1e-4;
 	scene.threads = 2;  // the other thread must learn of it too
 	scene.grains = { disk(0, 0), disk(0.7, 0) };
-	Stepper deep(scene);
+	Stepper<2> deep(scene);
 	try {
 		deep.step(200);
 		FAIL() << "an overlap of 0.6 of a radius went unnoticed";

@@ -21,14 +21,14 @@ const laws::HertzHistory<Real> paper{ 2e6, 2.46e6, 2500, 2500, 0 };  // Tripura 
 constexpr double speed = 1, paper_step = 1e-4;
 
 /// Two disks that fly at each other and meet at some moment within a step.
-Scene impact(double dt, double phase, double damping)
+Scene<2> impact(double dt, double phase, double damping)
 {
-	Scene s;
+	Scene<2> s;
 	s.law = laws::HertzHistory<Real>{ paper.k_n, paper.k_t, damping, damping, 0 };
 	s.friction = false;
 	s.dt = dt;
 	s.grains = { disk(0, 0), disk(1 + speed * dt * (1 + phase), 0) };
-	s.grains[0].vx = speed / 2, s.grains[1].vx = -speed / 2;
+	s.grains[0].velocity[0] = speed / 2, s.grains[1].velocity[0] = -speed / 2;
 	return s;
 }
 
@@ -37,23 +37,23 @@ struct Impact {
 	double change = 0;                // of the kinetic energy from before to after
 };
 
-Impact outcome(const Scene& scene)
+Impact outcome(const Scene<2>& scene)
 {
-	Stepper loop(scene);
+	Stepper<2> loop(scene);
 	loop.track_energy(true);
 	const double mass = scene.grains[0].mass / 2, before = 0.5 * mass * speed * speed;
 	const auto& law = std::get<laws::HertzHistory<Real>>(scene.law);
 	Impact result;
 	for (int k = 0; k * scene.dt < 0.03; ++k) {
-		const Grain a = loop.grain(0), b = loop.grain(1);
-		const double h = std::sqrt(0.25 * std::max(0.0, 1 - (b.x - a.x))), stiffness = 1.5 * law.k_n * h,
+		const Grain<2> a = loop.grain(0), b = loop.grain(1);
+		const double h = std::sqrt(0.25 * std::max(0.0, 1 - (b.place[0] - a.place[0]))), stiffness = 1.5 * law.k_n * h,
 					 dashpot = law.gamma_n * mass * h;
 		loop.step();
-		const double v = (a.vx - b.vx + loop.grain(0).vx - loop.grain(1).vx) / 2;
+		const double v = (a.velocity[0] - b.velocity[0] + loop.grain(0).velocity[0] - loop.grain(1).velocity[0]) / 2;
 		result.predicted -= scene.dt * scene.dt / 6 * stiffness * dashpot * v * v / mass * scene.dt / before;
 	}
 	EXPECT_EQ(loop.contacts().size(), 0u);
-	const double after = loop.grain(0).vx - loop.grain(1).vx;
+	const double after = loop.grain(0).velocity[0] - loop.grain(1).velocity[0];
 	result.entry = loop.energy_ledger()->energies().time_step / before;
 	result.change = 0.5 * mass * after * after / before - 1;
 	return result;

@@ -93,7 +93,7 @@ def test_shapes_axes_and_names():
     sphere((0, 0, 0))
     window = dict(low=(-1, -0.8, -0.6), high=(1, 0.8, 0.6), spacing=0.2, width=1, cutoff=2, phases=2)
     shapes = {"": (6, 8, 10), "x": (6, 8), "y": (6, 10), "z": (8, 10)}
-    measures = {along: averager(along or "all", averageAlong=along, **window) for along in shapes}
+    measures = {along: averager(along or "whole", averageAlong=along, **window) for along in shapes}
     loop(before_newton=measures.values())
     run(1)
     for along, shape in shapes.items():
@@ -138,7 +138,7 @@ def test_the_fields_lie_where_the_sphere_is_and_move_as_it_does():
 
 
 def test_averaged_along_an_axis_is_the_mean_of_the_slices():
-    measures = [averager("all"), *(averager(axis, averageAlong=axis) for axis in "xyz")]
+    measures = [averager("whole"), *(averager(axis, averageAlong=axis) for axis in "xyz")]
     crowd(*measures)
     run(3)
     phi, stress, velocity = measures[0].solidFraction, measures[0].contactStress, measures[0].velocity
@@ -206,7 +206,7 @@ def test_a_settled_bed_carries_the_weight_above():
         for x, y in sites
     ]
     options = dict(low=(0, 0, 3.5), high=(length, width, 8), spacing=0.5, kernel="gaussian", width=1, cutoff=3)
-    measures = [averager("row", averageAlong="y", **options), averager("all", **options)]
+    measures = [averager("row", averageAlong="y", **options), averager("whole", **options)]
     measures.append(averager("spheres", **{**options, "kernel": "sphere"}, averageAlong="x"))
     for measure in measures:
         measure.dead = True

@@ -1,29 +1,35 @@
-/// Checks of boxes and disks, and the bookkeeping of the cell grid.
+/// Checks of boxes and grains, and the bookkeeping of the cell grid.
 #include "engines/packing/box.hpp"
 
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace graindrive::packing {
 
 namespace {
 
-/// About as many cells as disks: narrower ones would cost memory and find nothing more.
-long cells_along(Real side, Real reach, Real most) { return std::max(1L, static_cast<long>(std::min(side / reach, most))); }
+template <int D>
+constexpr Real fewest_cells = D == 2 ? 64 : 16;  // along an axis
 
 }  // namespace
 
-void require_box(const Box& box)
+template <int D>
+void require_box(const Box<D>& box)
 {
-	const bool finite = std::isfinite(box.width()) && std::isfinite(box.height());
-	if (finite && box.width() > 0 && box.height() > 0) return;
+	bool usable = true;
+	for (int k = 0; k < D; ++k) usable = usable && std::isfinite(box.side(k)) && box.side(k) > 0;
+	if (usable) return;
 	std::ostringstream message;
-	message << "box must have finite sides with x_min < x_max and y_min < y_max, got (" << box.x_min << ", " << box.x_max << ", "
-			<< box.y_min << ", " << box.y_max << "); give them in this order";
+	message << "box must have finite sides with x_min < x_max"
+			<< (D == 2 ? " and y_min < y_max" : ", y_min < y_max and z_min < z_max") << ", got (";
+	for (int k = 0; k < D; ++k) message << (k ? ", " : "") << box.low[k] << ", " << box.high[k];
+	message << "); give them in this order";
 	throw std::invalid_argument(message.str());
 }
 
-void require_disks(const std::vector<Real>& radii, const Points& centres, const char* role)
+template <int D>
+void require_grains(const std::vector<Real>& radii, const Points<D>& centres, const char* role)
 {
 	std::ostringstream message;
 	if (!centres.empty() && centres.size() != radii.size()) {
@@ -41,43 +47,57 @@ void require_disks(const std::vector<Real>& radii, const Points& centres, const 
 	}
 }
 
-CellGrid::CellGrid(const Box& box, Real reach, std::size_t expected) : box_(box)
+/// About as many cells as grains: narrower ones would cost memory and find nothing more.
+template <int D>
+CellGrid<D>::CellGrid(const Box<D>& box, Real reach, std::size_t expected) : box_(box)
 {
-	const Real most = 2 * std::sqrt(static_cast<Real>(expected)) + 64;
-	columns_ = cells_along(box.width(), reach, most * std::max(1.0, std::sqrt(box.width() / box.height())));
-	rows_ = cells_along(box.height(), reach, most * std::max(1.0, std::sqrt(box.height() / box.width())));
-	first_.assign(columns_ * rows_, -1);
+	const Real most = 2 * std::pow(static_cast<Real>(expected), 1.0 / D) + fewest_cells<D>;
+	const Real mean_side = std::pow(box.extent(), 1.0 / D);
+	std::size_t all = 1;
+	for (int k = 0; k < D; ++k) {
+		const Real cells = std::min(box.side(k) / reach, most * std::max(1.0, box.side(k) / mean_side));
+		cells_[k] = std::max(1L, static_cast<long>(cells));
+		all *= static_cast<std::size_t>(cells_[k]);
+	}
+	first_.assign(all, -1);
 	next_.reserve(expected);
 }
 
-void CellGrid::add(std::size_t disk, const Vector2r& centre)
+template <int D>
+void CellGrid<D>::add(std::size_t grain, const Point<D>& centre)
 {
-	long& first = first_[row_of(centre.y()) * columns_ + column_of(centre.x())];
-	if (disk >= next_.size()) next_.resize(disk + 1, -1);
-	next_[disk] = first;
-	first = static_cast<long>(disk);
+	long cell = 0;
+	for (int k = D - 1; k >= 0; --k) cell = cell * cells_[k] + place(k, centre[k]);
+	if (grain >= next_.size()) next_.resize(grain + 1, -1);
+	next_[grain] = first_[cell];
+	first_[cell] = static_cast<long>(grain);
 }
 
-long CellGrid::column_of(Real x) const
+template <int D>
+long CellGrid<D>::place(int axis, Real coordinate) const
 {
-	Real part = (x - box_.x_min) / box_.width();
-	if (box_.periodic_x) part -= std::floor(part);
-	return static_cast<long>(std::clamp(part * columns_, 0.0, columns_ - 1.0));
+	Real part = (coordinate - box_.low[axis]) / box_.side(axis);
+	if (box_.periodic[axis]) part -= std::floor(part);
+	return static_cast<long>(std::clamp(part * cells_[axis], 0.0, cells_[axis] - 1.0));
 }
 
-long CellGrid::row_of(Real y) const
+template <int D>
+typename CellGrid<D>::Three CellGrid<D>::beside(int axis, long place) const
 {
-	return static_cast<long>(std::clamp((y - box_.y_min) / box_.height() * rows_, 0.0, rows_ - 1.0));
-}
-
-CellGrid::Three CellGrid::columns_around(long column) const
-{
-	Three around{ { column - 1, column, column + 1 } };
-	if (around.column[2] == columns_) around.column[2] = box_.periodic_x && columns_ > 1 ? 0 : -1;
-	if (around.column[0] < 0 && box_.periodic_x && columns_ > 2)
-		around.column[0] = columns_ - 1;  // with two, it has been visited
-	if (columns_ == 2 && box_.periodic_x) return { { 0, 1, -1 } };
+	const long cells = cells_[axis];
+	const bool periodic = box_.periodic[axis];
+	if (cells == 2 && periodic) return { 0, 1, -1 };
+	Three around{ place - 1, place, place + 1 };
+	if (around[2] == cells) around[2] = periodic && cells > 1 ? 0 : -1;
+	if (around[0] < 0 && periodic && cells > 2) around[0] = cells - 1;
 	return around;
 }
+
+template void require_box(const Box<2>&);
+template void require_box(const Box<3>&);
+template void require_grains(const std::vector<Real>&, const Points<2>&, const char*);
+template void require_grains(const std::vector<Real>&, const Points<3>&, const char*);
+template class CellGrid<2>;
+template class CellGrid<3>;
 
 }  // namespace graindrive::packing

@@ -1,6 +1,7 @@
-/// `Box`, the rectangle that a packing fills, and `CellGrid`, which finds the disks near a point of it.
+/// `Box`, the rectangle or cuboid that a packing fills, and `CellGrid`, which finds the grains near a point of it.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -9,65 +10,94 @@
 
 namespace graindrive::packing {
 
-using Points = std::vector<Vector2r>;
+template <int D>
+using Point = Eigen::Matrix<Real, D, 1>;
+template <int D>
+using Points = std::vector<Point<D>>;
 
+template <int D>
 struct Box {
-	Real x_min, x_max, y_min, y_max;  ///< [length]
-	bool periodic_x;                  ///< the sides at x_min and x_max are one line
+	std::array<Real, D> low, high;  ///< [length]
+	std::array<bool, D> periodic;   ///< along an axis: its two sides are one
 
-	Real width() const { return x_max - x_min; }
-	Real height() const { return y_max - y_min; }
+	Real side(int axis) const { return high[axis] - low[axis]; }
 
-	/// From one point to another; across the periodic side if that is nearer.
-	Vector2r between(const Vector2r& from, const Vector2r& to) const
+	/// Area [length^2] or volume [length^3].
+	Real extent() const
 	{
-		Vector2r way = to - from;
-		if (periodic_x) way.x() -= width() * std::round(way.x() / width());
+		Real product = 1;
+		for (int k = 0; k < D; ++k) product *= side(k);
+		return product;
+	}
+
+	/// From one point to another; across periodic sides if that is nearer.
+	Point<D> between(const Point<D>& from, const Point<D>& to) const
+	{
+		Point<D> way = to - from;
+		for (int k = 0; k < D; ++k)
+			if (periodic[k]) way[k] -= side(k) * std::round(way[k] / side(k));
 		return way;
 	}
 };
 
+/// A box in the plane whose left and right sides may be one.
+inline Box<2> rectangle(Real x_min, Real x_max, Real y_min, Real y_max, bool periodic_x)
+{
+	return { { x_min, y_min }, { x_max, y_max }, { periodic_x, false } };
+}
+
 /// @throws std::invalid_argument unless the sides are finite and in order
-void require_box(const Box& box);
+template <int D>
+void require_box(const Box<D>& box);
 
-/// @throws std::invalid_argument naming the first disk whose radius or, if `centres` is not empty, centre is no usable number
-void require_disks(const std::vector<Real>& radii, const Points& centres, const char* role);
+/// @throws std::invalid_argument naming the first grain whose radius or, if `centres` is not empty, centre is no usable number
+template <int D>
+void require_grains(const std::vector<Real>& radii, const Points<D>& centres, const char* role);
 
-/// Disks sorted into square cells at least `reach` wide, so that whatever is nearer than `reach` lies in a cell or beside it.
-/// Points outside the box belong to its outermost cells.
+/// Grains sorted into square or cubic cells at least `reach` wide, so that whatever is nearer than `reach` lies in a cell or
+/// beside it. Points outside the box belong to its outermost cells.
+template <int D>
 class CellGrid {
 public:
-	CellGrid(const Box& box, Real reach, std::size_t expected);
+	CellGrid(const Box<D>& box, Real reach, std::size_t expected);
 
-	void add(std::size_t disk, const Vector2r& centre);
+	void add(std::size_t grain, const Point<D>& centre);
 
-	/// Calls visit(disk) for the disks in the cell of `centre` and the eight around it, until one call answers true.
+	/// Calls visit(grain) for the grains in the cell of `centre` and those around it, until one call answers true.
 	template <class Visit>
-	bool any_near(const Vector2r& centre, Visit visit) const
+	bool any_near(const Point<D>& centre, Visit visit) const
 	{
-		const long column = column_of(centre.x()), row = row_of(centre.y());
-		for (long r = std::max(row - 1, 0L); r <= std::min(row + 1, rows_ - 1); ++r)
-			for (const long c : columns_around(column))
-				if (c >= 0)
-					for (long disk = first_[r * columns_ + c]; disk >= 0; disk = next_[disk])
-						if (visit(static_cast<std::size_t>(disk))) return true;
-		return false;
+		std::array<Three, D> around;
+		for (int k = 0; k < D; ++k) around[k] = beside(k, place(k, centre[k]));
+		return any_in<D - 1>(around, 0, visit);
 	}
 
 private:
-	struct Three {
-		long column[3];  // -1: none
-		const long* begin() const { return column; }
-		const long* end() const { return column + 3; }
-	};
+	using Three = std::array<long, 3>;  // places along an axis; -1: none
 
-	long column_of(Real x) const;
-	long row_of(Real y) const;
-	Three columns_around(long column) const;
+	/// Goes through the axes from the last to the first; `row` is the place in the axes that are fixed already.
+	template <int axis, class Visit>
+	bool any_in(const std::array<Three, D>& around, long row, Visit& visit) const
+	{
+		for (const long at : around[axis]) {
+			if (at < 0) continue;
+			const long cell = row * cells_[axis] + at;
+			if constexpr (axis > 0) {
+				if (any_in<axis - 1>(around, cell, visit)) return true;
+			} else {
+				for (long grain = first_[cell]; grain >= 0; grain = next_[grain])
+					if (visit(static_cast<std::size_t>(grain))) return true;
+			}
+		}
+		return false;
+	}
 
-	Box box_;
-	long columns_, rows_;
-	std::vector<long> first_, next_;  // linked lists: first disk of a cell, next of a disk; -1 ends
+	long place(int axis, Real coordinate) const;
+	Three beside(int axis, long place) const;
+
+	Box<D> box_;
+	std::array<long, D> cells_;
+	std::vector<long> first_, next_;  // linked lists: first grain of a cell, next of a grain; -1 ends
 };
 
 }  // namespace graindrive::packing

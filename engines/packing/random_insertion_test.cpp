@@ -16,24 +16,24 @@ namespace {
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 
 /// The cell grid's answer without a cell grid.
-Real deepest_by_brute_force(const Box& box, const Points& centres, const std::vector<Real>& radii)
+Real deepest_by_brute_force(const Box<2>& box, const Points<2>& centres, const std::vector<Real>& radii)
 {
 	Real deepest = 0;
 	for (std::size_t i = 0; i < radii.size(); ++i)
 		for (std::size_t j = 0; j < i; ++j)
 			for (const Real image : { -1.0, 0.0, 1.0 }) {
-				if (image != 0 && !box.periodic_x) continue;
-				const Vector2r way = centres[i] - centres[j] + Vector2r(image * box.width(), 0);
+				if (image != 0 && !box.periodic[0]) continue;
+				const Vector2r way = centres[i] - centres[j] + Vector2r(image * box.side(0), 0);
 				deepest = std::max(deepest, (radii[i] + radii[j] - way.norm()) / std::min(radii[i], radii[j]));
 			}
 	return deepest;
 }
 
-Points random_points(const Box& box, std::size_t n, std::uint64_t seed)
+Points<2> random_points(const Box<2>& box, std::size_t n, std::uint64_t seed)
 {
 	Uniform random(seed, 9);
-	Points points(n);
-	for (Vector2r& p : points) p.x() = random(box.x_min, box.x_max), p.y() = random(box.y_min, box.y_max);
+	Points<2> points(n);
+	for (Vector2r& p : points) p.x() = random(box.low[0], box.high[0]), p.y() = random(box.low[1], box.high[1]);
 	return points;
 }
 
@@ -43,25 +43,25 @@ TEST(RandomInsertion, leaves_no_overlaps_and_keeps_disks_inside)
 {
 	for (const bool periodic : { true, false })
 		for (const Real width : { 2.3, 5.0, 40.0 }) {  // one, two and many columns of cells
-			const Box box{ -3, width - 3, 10, 35, periodic };
+			const Box<2> box = rectangle(-3, width - 3, 10, 35, periodic);
 			const auto radii = uniform_radii(static_cast<std::size_t>(0.3 * width * 25), 0.9, 1.1, 7);
-			const Points centres = random_insertion(box, radii, {}, 7);
+			const Points<2> centres = random_insertion<2>(box, radii, {}, 7);
 			EXPECT_EQ(deepest_by_brute_force(box, centres, radii), 0) << periodic << width;
 			for (std::size_t i = 0; i < radii.size(); ++i) {
 				const Real margin = periodic ? 0 : radii[i] - 1e-14;  // the round-off of box sides of order 10
-				EXPECT_TRUE(centres[i].x() >= box.x_min + margin && centres[i].x() <= box.x_max - margin);
-				EXPECT_TRUE(centres[i].y() >= box.y_min + radii[i] - 1e-14 && centres[i].y() <= box.y_max - radii[i] + 1e-14);
+				EXPECT_TRUE(centres[i].x() >= box.low[0] + margin && centres[i].x() <= box.high[0] - margin);
+				EXPECT_TRUE(centres[i].y() >= box.low[1] + radii[i] - 1e-14 && centres[i].y() <= box.high[1] - radii[i] + 1e-14);
 			}
 		}
 }
 
 TEST(RandomInsertion, keeps_clear_of_obstacles_across_the_periodic_side_and_outside_the_box)
 {
-	const Box box{ 0, 30, 0, 20, true };
-	Obstacles obstacles{ { { 29, 10 }, { 5, -2 } }, { 2.5, 3.0 } };
+	const Box<2> box = rectangle(0, 30, 0, 20, true);
+	Obstacles<2> obstacles{ { { 29, 10 }, { 5, -2 } }, { 2.5, 3.0 } };
 	for (int i = 0; i < 30; ++i) obstacles.centres.emplace_back(i + 0.5, 20), obstacles.radii.push_back(0.5);
 	auto radii = uniform_radii(250, 0.9, 1.1, 3);
-	Points centres = random_insertion(box, radii, obstacles, 3);
+	Points<2> centres = random_insertion<2>(box, radii, obstacles, 3);
 	for (std::size_t i = 0; i < radii.size(); ++i)
 		for (std::size_t k = 0; k < obstacles.radii.size(); ++k)
 			EXPECT_GE(box.between(centres[i], obstacles.centres[k]).norm(), (radii[i] + obstacles.radii[k]) * (1 - 1e-15));
@@ -69,11 +69,11 @@ TEST(RandomInsertion, keeps_clear_of_obstacles_across_the_periodic_side_and_outs
 
 TEST(RandomInsertion, is_the_same_for_a_seed_and_pinned_for_every_machine)
 {
-	const Box box{ 0, 20, 0, 20, true };
+	const Box<2> box = rectangle(0, 20, 0, 20, true);
 	const auto radii = uniform_radii(100, 0.9, 1.1, 42);
-	const Points centres = random_insertion(box, radii, {}, 42);
-	EXPECT_EQ(centres, random_insertion(box, uniform_radii(100, 0.9, 1.1, 42), {}, 42));
-	EXPECT_NE(centres, random_insertion(box, radii, {}, 43));
+	const Points<2> centres = random_insertion<2>(box, radii, {}, 42);
+	EXPECT_EQ(centres, random_insertion<2>(box, uniform_radii(100, 0.9, 1.1, 42), {}, 42));
+	EXPECT_NE(centres, random_insertion<2>(box, radii, {}, 43));
 	EXPECT_NE(radii, uniform_radii(100, 0.9, 1.1, 43));
 	// Exact digits: a change here means that every seeded bed has changed.
 	EXPECT_EQ(radii[0], 0.46396720037641176);
@@ -84,10 +84,10 @@ TEST(RandomInsertion, is_the_same_for_a_seed_and_pinned_for_every_machine)
 TEST(RandomInsertion, fills_the_box_evenly)
 {
 	// Chi-square over 8 x 8 parts; hard disks at area fraction 0.3 vary less than Poisson points, whose mean is 63 and spread 11.
-	const Box box{ 0, 80, 0, 80, true };
+	const Box<2> box = rectangle(0, 80, 0, 80, true);
 	const auto radii = uniform_radii(2400, 0.9, 1.1, 5);
 	std::vector<int> count(64, 0);
-	for (const Vector2r& c : random_insertion(box, radii, {}, 5))
+	for (const Vector2r& c : random_insertion<2>(box, radii, {}, 5))
 		++count[static_cast<int>(c.y() / 10) * 8 + static_cast<int>(c.x() / 10)];
 	Real chi_square = 0;
 	for (const int n : count) chi_square += (n - 37.5) * (n - 37.5) / 37.5;
@@ -97,24 +97,27 @@ TEST(RandomInsertion, fills_the_box_evenly)
 TEST(RandomInsertion, says_what_was_reached_when_the_box_is_full)
 {
 	// Jamming of random insertion is 0.547: 0.7 cannot be reached.
-	const std::string message = complaint([] {
-		random_insertion({ 0, 20, 0, 20, true }, uniform_radii(360, 0.9, 1.1, 1), {}, 1, 2000);
-	});
+	const std::string message =
+		complaint([] { random_insertion<2>(rectangle(0, 20, 0, 20, true), uniform_radii(360, 0.9, 1.1, 1), {}, 1, 2000); });
 	EXPECT_TRUE(mentions(message, "2000 random trials") && mentions(message, "of 360 were placed (area fraction 0.5")) << message;
 }
 
 TEST(RandomInsertion, refuses_bad_input)
 {
-	const Box box{ 0, 10, 0, 10, true };
-	EXPECT_TRUE(mentions(complaint([] { random_insertion({ 0, 0, 0, 10, true }, { 1 }, {}, 1); }), "x_min < x_max"));
-	EXPECT_TRUE(mentions(complaint([] { random_insertion({ 0, not_a_number, 0, 10, true }, { 1 }, {}, 1); }), "finite sides"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion(box, { 1, -1 }, {}, 1); }), "got -1 for disk 1"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion(box, { 1 }, { { { not_a_number, 0 } }, { 1 } }, 1); }), "obstacle 0"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion(box, { 1 }, { {}, { 1 } }, 1); }), "one centre a radius"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion(box, { 5.1 }, {}, 1); }), "must hold the largest disk"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion(box, { 1 }, {}, 1, 0); }), "at least 1, got 0"));
+	const Box<2> box = rectangle(0, 10, 0, 10, true);
+	EXPECT_TRUE(mentions(complaint([] { random_insertion<2>(rectangle(0, 0, 0, 10, true), { 1 }, {}, 1); }), "x_min < x_max"));
+	EXPECT_TRUE(
+		mentions(complaint([] { random_insertion<2>(rectangle(0, not_a_number, 0, 10, true), { 1 }, {}, 1); }), "finite sides"));
+	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1, -1 }, {}, 1); }), "got -1 for disk 1"));
+	EXPECT_TRUE(mentions(complaint([&] {
+		random_insertion<2>(box, { 1 }, { { { not_a_number, 0 } }, { 1 } }, 1);
+	}),
+		"obstacle 0"));
+	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1 }, { {}, { 1 } }, 1); }), "one centre a radius"));
+	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 5.1 }, {}, 1); }), "must hold the largest disk"));
+	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1 }, {}, 1, 0); }), "at least 1, got 0"));
 	EXPECT_TRUE(mentions(complaint([] { uniform_radii(3, 1.1, 0.9, 1); }), "0 < d_min <= d_max, got 1.1 and 0.9"));
-	EXPECT_TRUE(random_insertion(box, {}, {}, 1).empty());
+	EXPECT_TRUE(random_insertion<2>(box, {}, {}, 1).empty());
 }
 
 TEST(UniformRadii, have_the_mean_and_spread_of_a_uniform_distribution)
@@ -134,22 +137,22 @@ TEST(UniformRadii, have_the_mean_and_spread_of_a_uniform_distribution)
 TEST(Overlaps, agree_with_brute_force)
 {
 	for (std::uint64_t seed = 0; seed < 40; ++seed) {
-		const Box box{ 1, 1 + 2.2 * (1 + seed % 8), -5, 5, seed % 2 == 0 };
+		const Box<2> box = rectangle(1, 1 + 2.2 * (1 + seed % 8), -5, 5, seed % 2 == 0);
 		const auto radii = uniform_radii(5 + seed, 0.2, 1.8, seed);
-		const Points centres = random_points(box, radii.size(), seed);
-		const Overlap deepest = overlaps(box, centres, radii);
+		const Points<2> centres = random_points(box, radii.size(), seed);
+		const Overlap deepest = overlaps<2>(box, centres, radii);
 		EXPECT_DOUBLE_EQ(deepest.relative, deepest_by_brute_force(box, centres, radii)) << seed;
 	}
 }
 
 TEST(Overlaps, name_the_pair)
 {
-	const Box box{ 0, 10, 0, 10, true };
-	const Overlap across = overlaps(box, { { 0.2, 5 }, { 5, 5 }, { 9.6, 5 } }, { 0.5, 1, 0.4 });
+	const Box<2> box = rectangle(0, 10, 0, 10, true);
+	const Overlap across = overlaps<2>(box, { { 0.2, 5 }, { 5, 5 }, { 9.6, 5 } }, { 0.5, 1, 0.4 });
 	EXPECT_TRUE(across.found);
 	EXPECT_NEAR(across.relative, (0.9 - 0.6) / 0.4, 1e-14);
 	EXPECT_EQ(across.first, 0u);
 	EXPECT_EQ(across.second, 2u);
-	EXPECT_FALSE(overlaps(box, { { 1, 1 }, { 2, 1 } }, { 0.5, 0.5 }).found) << "touching is not overlapping";
-	EXPECT_TRUE(mentions(complaint([&] { overlaps(box, { { 1, 1 } }, { 1, 2 }); }), "got 2 radii and 1 centres"));
+	EXPECT_FALSE(overlaps<2>(box, { { 1, 1 }, { 2, 1 } }, { 0.5, 0.5 }).found) << "touching is not overlapping";
+	EXPECT_TRUE(mentions(complaint([&] { overlaps<2>(box, { { 1, 1 } }, { 1, 2 }); }), "got 2 radii and 1 centres"));
 }

@@ -3,7 +3,9 @@
 import uuid
 from dataclasses import dataclass
 
-from . import engines, loop_laws, stand_ins, take_over
+from . import contact_springs
+from . import dimensions as dims
+from . import engines, loop_laws, stand_ins, take_over, take_over_spheres
 from .errors import UsageError
 
 TAG = "graindrive.exchange"  # in O.tags, which O.save keeps: which exchange the scene's GrainLoop comes from
@@ -22,35 +24,43 @@ class Exchange:
 exchanged = {}  # tag of a scene -> Exchange
 
 
-def use_grain_loop(periods=None, **settings):
+def use_grain_loop(periods=None, dimensions=None, **settings):
     """Replace YADE's four engines in O.engines by one GrainLoop with the same law, materials, damping and gravity; return it.
 
     Other engines stay in their order, before it or, where they stood behind NewtonIntegrator, behind it.
-    `periods` are the lengths (x, y) after which the box repeats, 0 where it does not; by default those of O.cell. A cell
-    that is long on purpose runs faster with 0 there. Other `settings` (precision, threads, syncEvery, ...) go to GrainLoop.
-    Present contacts keep their tangential springs. Labels of YADE's four engines and of their functors then refuse to be
-    read or set (`stand_ins`).
+    `dimensions` is 2 for disks in a plane z = const and 3 for spheres in space. By default the scene says: 3 if some
+    sphere or clump may leave the plane (its blockedDOFs lack one of z, X, Y) and something takes bodies out of it,
+    which is centres at different z, a motion along z or a turn about x or y, or gravity along z; else 2. Say 3 where a
+    drive or a force will lift a body out of a plane in which all lie.
+    `periods` are the lengths after which the box repeats, (x, y) for disks, (x, y, z) for spheres, 0 where it does not; by
+    default those of O.cell. A cell that is long on purpose runs faster with 0 there. Other `settings` (precision, threads,
+    syncEvery, ...) go to GrainLoop. Present contacts keep their tangential springs. Labels of YADE's four engines and of
+    their functors then refuse to be read or set (`stand_ins`).
 
     Contacts of a step see driven and frozen bodies with the velocities of the step before, and free disks as engines before
     GrainLoop (TranslationEngine, a PyRunner) have left them. On YADE's loop it depends on whether the engine stands before
     or behind InteractionLoop; the difference is a delay of one step. A contact of a frozen disk that is set in motion takes
     the reduced mass of the pair anew, and YADE's keeps that of before.
 
-    Raises UsageError for what GrainLoop does not do (`take_over.RULES`, `loop_laws`), ValueError for bodies and cells that
-    it cannot move, RuntimeError for engines that it does not know; O.engines then stays as it was.
+    Raises UsageError for what GrainLoop does not do (`take_over.RULES`, of spheres also `take_over_spheres.RULES`,
+    `loop_laws`), ValueError for bodies and cells that it cannot move, RuntimeError for engines that it does not know;
+    O.engines then stays as it was.
     """
     from yade import O
 
     loop = take_over.yades_loop()
     take_over.require(loop)
-    if periods is None:
-        periods = (O.cell.size[0], O.cell.size[1]) if O.periodic else (0, 0)
+    dimensions = dims.of_scene(loop.newton) if dimensions is None else dimensions
+    if dimensions == 3:
+        take_over.require(loop, take_over_spheres.RULES)
     of_scene = {
         **loop_laws.law_settings(loop.contacts),
         **loop_laws.damping_settings(loop.newton),
-        "springs": loop_laws.springs_of(loop.contacts),
+        "springs": contact_springs.springs_of(loop.contacts, dimensions),
     }
-    made = engines.GrainLoop(gravity=loop.newton.gravity, periods=(*periods, 0), **{**of_scene, **settings})
+    periods = dims.periods_of_scene(periods, dimensions)
+    given = dict(dimensions=dimensions, gravity=loop.newton.gravity, periods=periods)
+    made = engines.GrainLoop(**{**given, **of_scene, **settings})
     before = O.engines
     O.engines = loop.with_grain_loop(made)
     try:
@@ -112,7 +122,7 @@ def use_yade_loop():
     hand_settings_back(loop, before)
     del exchanged[tag]
     O.engines = before.put_back(O.engines)
-    make_contacts_anew(before, loop.springs)
+    make_contacts_anew(before, loop.springs, loop.dimensions)
 
 
 def hand_settings_back(loop, before):
@@ -140,7 +150,7 @@ def hand_settings_back(loop, before):
             setattr(law2, key, getattr(loop, key))
 
 
-def make_contacts_anew(loop, springs):
+def make_contacts_anew(loop, springs, dimensions):
     """Have YADE find all contacts of the present positions, in a step that takes no time, and give them these springs."""
     from yade import O
 
@@ -151,7 +161,7 @@ def make_contacts_anew(loop, springs):
     O.run(1, True)  # in the loop's own thread: forces of engines that are called by hand are not cleared
     O.engines, O.dt = engines_of_scene, dt
     engines.set_clock(O._sceneObj, *clock)
-    loop_laws.give_springs(loop.contacts, springs)
+    contact_springs.give_springs(loop.contacts, springs, dimensions)
 
 
 def find(name):

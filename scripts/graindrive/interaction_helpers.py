@@ -123,8 +123,8 @@ def outside_forces():
             f"unbalancedForce needs the forces of {pushing[0]}, which are gone after GrainLoop's step;"
             f" call it in a PyRunner between {pushing[0]} and GrainLoop"
         )
-    loads = np.array(live_loop().loads).reshape(-1, 3)  # id, F_x, F_y
-    np.add.at(force, (loads[:, :1].astype(int), [0, 1]), loads[:, 1:])
+    loads = np.array(live_loop().loads).reshape(-1, 4)  # id, F_x, F_y, F_z
+    np.add.at(force, loads[:, 0].astype(int), loads[:, 1:])
     return force
 
 

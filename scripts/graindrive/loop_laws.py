@@ -183,39 +183,3 @@ def damping_settings(newton):
                 " set its state.blockedDOFs='zXY', or NewtonIntegrator.exactAsphericalRot=False"
             )
     return dict(damping=newton.damping, dampGravity=newton.dampGravity)
-
-
-# Law2_ -> the attribute of the contact's phys in which it remembers: a tangential spring [m], or YADE's own laws a force [N]
-REMEMBERED = {
-    **{name: "slip" for name in OUR_LAWS},
-    "Law2_ScGeom_FrictPhys_CundallStrack": "shearForce",
-    "Law2_ScGeom_MindlinPhys_Mindlin": "shearElastic",
-}
-
-
-def springs_of(contacts):
-    """Return what the present contacts of an InteractionLoop remember, as GrainLoop.springs: id, id, number."""
-    from yade import O
-
-    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
-    springs = []
-    for contact in O.interactions:
-        if contact.isReal:
-            x, y, _ = contact.geom.normal
-            remembered = getattr(contact.phys, attribute)
-            springs += [contact.id1, contact.id2, x * remembered[1] - y * remembered[0]]
-    return springs
-
-
-def give_springs(contacts, springs):
-    """Have the present contacts of an InteractionLoop remember what `springs` (id, id, number) says, or nothing."""
-    from yade import O
-    from yade.minieigenHP import Vector3
-
-    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
-    remembered = {frozenset(map(int, springs[k : k + 2])): springs[k + 2] for k in range(0, len(springs), 3)}
-    for contact in O.interactions:
-        if contact.isReal:
-            x, y, _ = contact.geom.normal
-            number = remembered.get(frozenset((contact.id1, contact.id2)), 0.0)
-            setattr(contact.phys, attribute, Vector3(-y, x, 0) * number)

@@ -1,4 +1,4 @@
-"""Beds of disks around a held intruder: random insertion, settling under gravity, and the cache that keeps them."""
+"""Beds of disks around a held intruder: random insertion, settling under gravity, and the cache; spheres at random."""
 
 import sys
 from dataclasses import asdict, dataclass
@@ -13,6 +13,7 @@ from .progress_line import Calming
 RECIPE = 4  # raise it when a bed of the same parameters comes out different
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
+MOST_SPHERES = 0.36  # part of the room's volume: random insertion of equal spheres jams near 0.384
 LARGEST_OVERLAP = 0.3  # [R] where the settling of a bed is stopped
 
 
@@ -47,6 +48,42 @@ def settled_bed(recipe):
     The same recipe gives the same bed; it is taken from the cache when it is there.
     """
     return cache.cached("bed", as_plain(recipe), RECIPE, lambda: settle(recipe))
+
+
+def random_spheres(box, fraction, d_min, d_max, seed, *, periodic="", keep_out=None):
+    """Return centres (n, 3) and radii (n,) of spheres placed at random without overlaps [length].
+
+    `box` is (x_min, x_max, y_min, y_max, z_min, z_max); it repeats along the axes that `periodic` names, as "xy".
+    `keep_out(points (m, 3))` gives signed distances (m,) to a solid, > 0 outside of it and to its nearest image where the
+    box repeats: no sphere reaches into it. Volumes of spheres, with diameters uniform in [d_min, d_max), fill `fraction` of
+    the room outside of the solid, which is measured on a grid of points. The same for a seed on every machine.
+    UsageError for a fraction that random insertion does not reach or a room without a sphere, ValueError for bad input.
+    """
+    if not 0 < fraction <= MOST_SPHERES:
+        raise UsageError(
+            f"fraction must lie in (0, {MOST_SPHERES}], got {fraction:g}: random insertion of equal spheres jams at 0.384;"
+            " compress a looser packing instead"
+        )
+    engines.overlaps_in_space(box, periodic, np.empty((0, 3)), ())  # refuses a box that is none
+    room = room_outside(np.array(box, dtype=float), keep_out)
+    mean_volume = np.pi / 24 * (d_min + d_max) * (d_min**2 + d_max**2)  # pi/6 <d^3>
+    count = round(fraction * room / mean_volume)
+    if count < 1:
+        raise UsageError(f"a room of {room:.3g} has no place for spheres of volume {mean_volume:.3g}; enlarge the box")
+    radii = engines.uniform_radii(count, d_min, d_max, seed)
+    return engines.random_insertion_in_space(box, periodic, radii, seed, keep_out), radii
+
+
+def room_outside(box, keep_out, points=40):
+    """Return the volume of a box outside of a solid, by a grid of points (an error of some 1/points of the solid's own)."""
+    low, side = box[::2], box[1::2] - box[::2]
+    if keep_out is None:
+        return np.prod(side)
+    middles = np.stack(np.meshgrid(*3 * [(np.arange(points) + 0.5) / points], indexing="ij"), axis=-1).reshape(-1, 3)
+    distances = np.asarray(keep_out(low + side * middles))
+    if distances.shape != (len(middles),):
+        raise ValueError(f"keep_out must give one distance a point, shape (n,), got shape {distances.shape}")
+    return np.prod(side) * np.mean(distances > 0)
 
 
 def as_plain(recipe):

@@ -1,8 +1,9 @@
 """Pictures of the scene for a run folder: grains, the driven body and the contacts between them at this moment.
 
 Contacts are those at the present positions, with the forces that the next step will find, under either loop; looking changes
-nothing. All x lie in one periodic image: grains in [0, period), the body whole with its centre there, a contact point next to
-its first side.
+nothing. All places lie in one periodic image, along x for disks and along each periodic axis for spheres: grains in
+[0, period), the body whole with its centre there, a contact point next to its first side. Figures draw disks alone; ParaView
+and OVITO show spheres (`exports`).
 """
 
 from typing import NamedTuple
@@ -19,13 +20,14 @@ class Picture(NamedTuple):
     """The scene at one moment, as `RunFolder.frame` stores it; the columns are those of `postproc.quantities`.
 
     `grains` holds grains and base, `contacts` those between anything shown, `intruder` the driven body's disks with its
-    `centre` and, for a single disk, its `angle`; dicts of arrays. `period` is the box's in x, 0 without.
+    `centre` and, for a single disk, its `angle`, among spheres its `turn`; dicts of arrays. `period` is the box's in x,
+    0 without, for spheres an array (3,).
     """
 
     grains: dict
     contacts: dict
     intruder: dict
-    period: float
+    period: float | np.ndarray
 
 
 def taken(grains, base, intruder):
@@ -35,9 +37,10 @@ def taken(grains, base, intruder):
     shown = np.concatenate([np.asarray(grains, int), np.asarray(base, int)])
     beads = np.array(scene.members(intruder) if O.bodies[intruder].isClump else [intruder])
     ids, n = np.concatenate([shown, beads]), len(shown)
-    period = float(O.cell.size[0]) if O.periodic else 0.0
-    rows, centre = scene.rows_of(ids), np.array(O.bodies[intruder].state.pos)[:2]
-    rows["x"] = in_one_image(rows["x"], n, centre, period)
+    rows, period = scene.rows_of(ids), period_of_box()
+    centre = np.array(O.bodies[intruder].state.pos)[: 3 if "z" in rows else 2]
+    for axis, (name, length) in enumerate(zip("xyz", np.atleast_1d(period))):
+        rows[name] = in_one_image(rows[name], n, centre, axis, length)
     disks = [
         {"id": ids[part], **{name: column[part] for name, column in rows.items()}}
         for part in (slice(n), slice(n, None))
@@ -46,13 +49,24 @@ def taken(grains, base, intruder):
     return Picture(disks[0], contacts(ids, rows, n), {**disks[1], **pose(intruder, centre)}, period)
 
 
-def in_one_image(x, n, centre, period):
-    """Return x with the first `n` and `centre`, an array (2,), moved into [0, period), the rest beside the centre."""
+def period_of_box():
+    """Return the period in x, 0 without, a float; of a scene of spheres those in x, y, z, (3,)."""
+    from yade import O
+
+    in_space, loop = scene.dimensions() == 3, scene.fast_loop()
+    if in_space and loop:
+        return np.array(loop.periods)
+    size = np.array(O.cell.size) if O.periodic else np.zeros(3)
+    return size if in_space else float(size[0])
+
+
+def in_one_image(x, n, centre, axis, period):
+    """Return x with the first `n`, and in place centre[axis], moved into [0, period), the rest beside the centre."""
     if period == 0:
         return x
-    beside = x[n:] - centre[0]
-    centre[0] = wrapped(centre[:1], period)[0]
-    return np.r_[wrapped(x[:n], period), centre[0] + beside - period * np.round(beside / period)]
+    beside = x[n:] - centre[axis]
+    centre[axis] = wrapped(centre[axis : axis + 1], period)[0]
+    return np.r_[wrapped(x[:n], period), centre[axis] + beside - period * np.round(beside / period)]
 
 
 def wrapped(x, period):
@@ -64,11 +78,14 @@ def wrapped(x, period):
 def pose(intruder, centre):
     """Return the centre of a body and, of a single disk, the angle by which it has turned [rad], in (-pi, pi].
 
-    A clump's places of beads say how it has turned.
+    A clump's places of beads say how it has turned. Of a body among spheres it is the quaternion `turn`, (w, x, y, z).
     """
     from yade import O
 
     body = O.bodies[intruder]
+    if len(centre) == 3:
+        turn = body.state.ori
+        return {"centre": centre, "turn": np.array([turn[3], turn[0], turn[1], turn[2]])}
     if body.isClump:
         return {"centre": centre}
     axis, angle = body.state.ori.toAxisAngle()
@@ -88,19 +105,29 @@ def contacts(ids, rows, n):
     i, j = row_of_id[table["i"]], np.where(table["j"] >= 0, row_of_id[table["j"]], table["j"])
     kept = (i != NOT_SHOWN) & (j != NOT_SHOWN)
     i, j, table = i[kept], j[kept], {name: column[kept] for name, column in table.items()}
-    normal = table["normal"][:, :2]
-    reach = rows["r"][i] - table["overlap"] / 2
+    normal, reach = table["normal"], rows["r"][i] - table["overlap"] / 2
+    axes = "xyz" if "z" in rows else "xy"
     return dict(
         i=named(i, n),
         j=named(j, n),
         id_i=table["i"],
         id_j=table["j"],
-        fn=np.sum(table["normal_force"][:, :2] * normal, axis=1),
-        ft=-np.sum(table["tangential_force"][:, :2] * np.c_[-normal[:, 1], normal[:, 0]], axis=1),
-        slip=table["slip"],
-        px=rows["x"][i] + reach * normal[:, 0],
-        py=rows["y"][i] + reach * normal[:, 1],
+        fn=np.sum((table["normal_force"] * normal)[:, : len(axes)], axis=1),
+        **(tangential_in_space(table) if len(axes) == 3 else tangential_in_plane(table)),
+        **{f"p{axis}": rows[axis][i] + reach * normal[:, k] for k, axis in enumerate(axes)},
     )
+
+
+def tangential_in_plane(table):
+    """Return tangential force on i and slip along z x n."""
+    force, normal = table["tangential_force"], table["normal"]
+    return {"ft": -np.sum(force[:, :2] * np.c_[-normal[:, 1], normal[:, 0]], axis=1), "slip": table["slip"]}
+
+
+def tangential_in_space(table):
+    """Return the components of tangential force on i and slip of i."""
+    of = {"ft": -table["tangential_force"], "slip": table["slip"]}
+    return {f"{name}_{axis}": vectors[:, k] for name, vectors in of.items() for k, axis in enumerate("xyz")}
 
 
 def named(row, n):
@@ -117,18 +144,21 @@ def present_contacts():
         return loop.presentContacts()
     interactions = grain_loop.find("InteractionLoop")
     law, contact_maker = interactions.lawDispatcher.functors[0], interactions.physDispatcher.functors[0]
-    return engines.present_contacts(O._sceneObj, law, contact_maker)
+    table = engines.present_contacts(O._sceneObj, law, contact_maker)
+    return {**table, "slip": table["slip_vector"]} if scene.dimensions() == 3 else table
 
 
 def ordered(table):
     """Return a table of contacts with the smaller id as i, by rising ids; walls are second in any case.
 
-    Turning a contact round turns the normal and forces, which act on j; slip is along z x n and of i against j: it stays.
+    Turning a contact round turns the normal and forces, which act on j. Slip is of i against j: of disks, along z x n, it
+    stays, and a vector turns round.
     """
     turned = (table["j"] >= 0) & (table["i"] > table["j"])
     sides = dict(i=np.where(turned, table["j"], table["i"]), j=np.where(turned, table["i"], table["j"]))
     sign = np.where(turned, -1.0, 1.0)[:, None]
-    vectors = {name: sign * table[name] for name in ("normal", "normal_force", "tangential_force")}
-    scalars = {name: table[name] for name in ("overlap", "slip", "slipping")}
+    turning = ["normal", "normal_force", "tangential_force"] + ["slip"] * (table["slip"].ndim == 2)
+    vectors = {name: sign * table[name] for name in turning}
+    scalars = {name: table[name] for name in ("overlap", "slip", "slipping") if name not in vectors}
     order = np.lexsort((sides["j"], sides["i"]))
     return {name: column[order] for name, column in {**sides, **vectors, **scalars}.items()}

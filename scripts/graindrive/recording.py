@@ -138,12 +138,18 @@ def run_sampled(folder, steps, block, sample, *, track, frames, stage, grains, l
 
 
 def block_means(binner):
-    """Return the means of a ContactForceBinner since it was last cleared, as a dict, and clear it.
+    """Return the means of a ContactForceBinner on a body among disks since it was last cleared, as a dict, and clear it.
 
     fx, fy, normal_x (of the normal forces alone) [N], torque [N m], contacts, slipping; variances of the instantaneous
     values within the block, fx_var, fy_var [N^2], contacts_var; by angle, shape (bins,): normal, tangential [N],
-    contacts_by_angle, slipping_by_angle.
+    contacts_by_angle, slipping_by_angle. UsageError on a GrainLoop of spheres, whose forces have a third component.
     """
+    loop = scene.fast_loop()
+    if loop and loop.dimensions == 3:
+        raise UsageError(
+            "block_means records forces in the plane, and this scene is one of spheres; read the binner's own force,"
+            " torque, ... (x, y, z)"
+        )
     force, variance = binner.force, binner.forceVariance
     row = dict(
         fx=force[0],

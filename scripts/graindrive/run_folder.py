@@ -52,10 +52,21 @@ class RunFolder:
             self.series.append(**columns)
 
     def frame(self, t, grains, contacts=None, intruder=None, period=0.0):
-        """Store a picture of the bed at time `t` (see `picture.Picture`): dicts of 1D arrays, and the box's period in x."""
-        parts = {"contacts": contacts or {}, "intruder": intruder or {}}
+        """Store a picture of the bed at time `t` (see `picture.Picture`): dicts of 1D arrays, and the box's period.
+
+        It is a number, in x, for disks, and three numbers for spheres, whose `grains` have a column `z`.
+        """
+        contacts = contacts or {}
+        if "z" in grains:
+            contacts = quantities.of_spheres(contacts, self.parameters.unit_system)
+        parts = {"contacts": contacts, "intruder": intruder or {}}
         inner = {f"{part}/{name}": array for part, columns in parts.items() for name, array in columns.items()}
-        self.write(f"frames/{self.frames + 1:04d}", {**grains, **inner}, t=float(t), period=float(period))
+        self.write(
+            f"frames/{self.frames + 1:04d}",
+            {**grains, **inner},
+            t=float(t),
+            period=period if np.ndim(period) else float(period),
+        )
         self.frames += 1
 
     def write(self, group, arrays, **attributes):

@@ -1,4 +1,4 @@
-"""Two-dimensional scenes of disks in YADE: grains, a frozen base, a clump of beads, and the loop that moves them."""
+"""Scenes in YADE: disks in a plane, a frozen base, a clump of beads, the loop that moves them; spheres in space."""
 
 import math
 import os
@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from . import dimensions as dimension_rule
 from . import engines, grain_loop
 from .errors import UsageError
 
@@ -257,7 +258,10 @@ def saved_by_yade():
 
 
 def rows_of(ids):
-    """Return x, y, radius, vx, vy, spin of the bodies `ids`, a dict of arrays of shape (n,)."""
+    """Return x, y, radius, vx, vy, spin of the bodies `ids`, a dict of arrays of shape (n,).
+
+    In a scene of spheres x, y, z, radius, vx, vy, vz, spin_x, spin_y, spin_z.
+    """
     from yade import O
 
     loop = fast_loop()
@@ -265,12 +269,41 @@ def rows_of(ids):
         loop.sync()
     table = engines.body_table(O._sceneObj)
     rows = np.searchsorted(table["id"], ids)
-    position, velocity = table["position"][rows], table["velocity"][rows]
-    return {
-        "x": position[:, 0],
-        "y": position[:, 1],
-        "r": table["radius"][rows],
-        "vx": velocity[:, 0],
-        "vy": velocity[:, 1],
-        "spin": table["spin"][rows, 2],
-    }
+    axes = "xyz"[: dimensions()]
+    columns = {axis: table["position"][rows, k] for k, axis in enumerate(axes)}
+    columns["r"] = table["radius"][rows]
+    columns.update({f"v{axis}": table["velocity"][rows, k] for k, axis in enumerate(axes)})
+    if len(axes) == 2:
+        return {**columns, "spin": table["spin"][rows, 2]}
+    return {**columns, **{f"spin_{axis}": table["spin"][rows, k] for k, axis in enumerate(axes)}}
+
+
+def dimensions():
+    """Return 2 for a scene of disks, 3 for one of spheres: GrainLoop's, else as `use_grain_loop` has it; 2 without a loop."""
+    from yade import O
+
+    loop = fast_loop()
+    if loop:
+        return loop.dimensions
+    newton = next((engine for engine in O.engines if type(engine).__name__ == "NewtonIntegrator"), None)
+    return 2 if newton is None else dimension_rule.of_scene(newton)
+
+
+def sphere(at, radius, density, blocked=""):
+    """Return a YADE body for a sphere at (x, y, z): mass 4/3 pi rho r^3, inertia 2/5 m r^2 about each axis."""
+    from yade import utils
+    from yade.minieigenHP import Vector3
+
+    body = utils.sphere(tuple(map(float, at)), float(radius))
+    body.state.mass = density * 4 / 3 * math.pi * radius**3
+    body.state.inertia = Vector3(1, 1, 1) * (0.4 * body.state.mass * radius**2)
+    body.state.blockedDOFs = blocked
+    return body
+
+
+def add_spheres(centres, radii, density, blocked=""):
+    """Add spheres and return their ids; centres (n, 3) and radii (n,) in length, density, one or (n,), in mass/length^3."""
+    from yade import O
+
+    densities = np.broadcast_to(density, len(centres))
+    return O.bodies.append([sphere(*row, blocked) for row in zip(centres, radii, densities)])

@@ -216,9 +216,9 @@ def yades_loop():
     return Loop(*found, order=tuple(O.engines))
 
 
-def require(loop):
-    """Raise UsageError with the first obstacle, in words."""
-    for rule in RULES:
+def require(loop, rules=tuple(RULES)):
+    """Raise UsageError with the first obstacle that one of the rules finds, in words."""
+    for rule in rules:
         obstacle = rule.obstacle(loop)
         if obstacle:
             raise UsageError(f"GrainLoop cannot take this scene over: {obstacle}, or stay on YADE's loop")

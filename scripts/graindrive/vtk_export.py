@@ -22,14 +22,15 @@ def export(frames, folder, body=None, units=()):
     frames' names to units. Grains are points with id, radius, velocity, spin and role, the driven body's disks among them
     with role 2: in ParaView, glyph by sphere, scale by radius, factor 2. Contacts are lines from centre to centre with
     ids i, j, slip, normal force (< 0 pulls) and tangential force (on i along z x n). The intruder is its outline as one
-    closed line; a single disk's is a circle with a spoke, which shows its turn. Raises UsageError without python3-vtk9.
+    closed line; a single disk's is a circle with a spoke, which shows its turn. Spheres have spin, slip and tangential force
+    as vectors, and a driven body among them has no outline: it is its beads. Raises UsageError without python3-vtk9.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     units, written = dict(units), {"grains": [], "contacts": []}
     for number, frame in enumerate(frames, start=1):
         parts = {"grains": grain_points(frame, units), "contacts": contact_lines(frame, units)}
-        if body and len(frame.intruder.get("x", ())):
+        if body and len(frame.axes) == 2 and len(frame.intruder.get("x", ())):
             parts["intruder"] = outline(frame, body)
         for kind, data in parts.items():
             name = f"{kind}_{number:04d}.vtp"
@@ -40,23 +41,34 @@ def export(frames, folder, body=None, units=()):
 
 
 def grain_points(frame, units):
-    """Return the vtkPolyData of a frame's disks."""
+    """Return the vtkPolyData of a frame's grains."""
     g = frame.disks()
     n = len(g["x"])
     arrays = {name: g[column] for name, column in GRAINS.items() if column in g and name != "velocity"}
-    arrays["velocity"] = in_plane(g["vx"], g["vy"])
+    arrays["velocity"] = as_vectors(frame.along_axes(g, "v{}"))
+    names = GRAINS
+    if len(frame.axes) == 3:
+        arrays["spin"], names = frame.along_axes(g, "spin_{}"), {**GRAINS, "spin": "spin_x"}
     cells = np.arange(n).reshape(n, 1)
-    return polydata(in_plane(g["x"], g["y"]), "verts", cells, arrays, renamed(units, GRAINS), on_points=True)
+    return polydata(as_vectors(frame.along_axes(g)), "verts", cells, arrays, renamed(units, names), on_points=True)
+
+
+def as_vectors(columns):
+    """Return (n, 2) or (n, 3) numbers as vectors in space."""
+    return in_plane(*columns.T) if columns.shape[1] == 2 else np.ascontiguousarray(columns, dtype=float)
 
 
 def contact_lines(frame, units):
-    """Return the vtkPolyData of a frame's contacts; a line across the periodic side ends beyond it, at j's image."""
-    c = frame.contacts
+    """Return the vtkPolyData of a frame's contacts; a line across a periodic side ends beyond it, at j's image."""
+    c, names = frame.contacts, CONTACTS
     n = len(c["fn"]) if c else 0
-    ends = frame.contact_ends() if n else (np.zeros((0, 2)),) * 2
+    ends = frame.contact_ends() if n else (np.zeros((0, len(frame.axes))),) * 2
     arrays = {name: c[column] for name, column in CONTACTS.items() if column in c} if n else {}
-    points, cells = in_plane(*np.concatenate(ends).T), np.arange(2 * n).reshape(2, n).T
-    return polydata(points, "lines", cells, arrays, renamed(units, CONTACTS), on_points=False)
+    if n and len(frame.axes) == 3:
+        names = {**CONTACTS, "tangential_force": "ft_x", "slip": "slip_x"}
+        arrays.update(tangential_force=frame.along_axes(c, "ft_{}"), slip=frame.along_axes(c, "slip_{}"))
+    points, cells = as_vectors(np.concatenate(ends)), np.arange(2 * n).reshape(2, n).T
+    return polydata(points, "lines", cells, arrays, renamed(units, names), on_points=False)
 
 
 def outline(frame, body):

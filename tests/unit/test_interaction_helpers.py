@@ -8,6 +8,7 @@ import sys
 import disks
 import numpy as np
 import pytest
+import spheres
 from graindrive import engines, grain_loop, interaction_helpers
 from yade import O, _utils, utils, wrapper
 from yade.minieigenHP import Vector3
@@ -65,6 +66,26 @@ def test_unbalanced_force_and_coordination_number_are_yades(gravity):
     np.testing.assert_allclose(grain, yade, rtol=1e-6)
 
 
+def test_of_spheres_they_are_yades_too():
+    """Spheres and a clump fall on frozen ones, which do not touch; one is pushed out of all planes."""
+
+    def build():
+        disks.new_scene(dt=2e-4)
+        rng = np.random.default_rng(5)
+        for k in range(5):
+            for x, y in np.ndindex(4, 4):
+                place = 1.02 * np.array([x, y, k]) + (rng.uniform(-0.01, 0.01, 3) if k else 0)
+                spheres.sphere(place, rng.uniform(0.46, 0.5), velocity=(0, 0, -1), blocked="" if k else "xyzXYZ")
+                O.bodies[-1].state.vel *= k > 0
+        spheres.free_clump([(1, 1, 5.2), (1.4, 1, 5.2), (1.4, 1.4, 5.3)])
+        spheres.loop(disks.hertz(gamma_n=250, gamma_t=250), friction=0.4, gravity=(1, 0, -10))
+        O.forces.setPermF(20, Vector3(3, -2, 4))
+
+    yade, grain = (told_of(build, loop) for loop in ("yade", "grain"))
+    assert yade.shape == (3, 3) and np.all(yade > 0)
+    np.testing.assert_allclose(grain, yade, rtol=1e-3)  # the clump is turned by another integrator, with an error of dt
+
+
 def test_forces_from_outside_count():
     def pushed():
         falling_bed((0, -10))
@@ -86,6 +107,20 @@ def test_loads_of_grain_loop_count():
     loop.setLoad(1, (-force / 4, 0, 0))
     assert utils.unbalancedForce() == pytest.approx((1 + 3 / 4) / 2, rel=1e-12)
     assert utils.unbalancedForce(useMaxForce=True) == pytest.approx(1, rel=1e-12)
+
+
+def test_loads_on_spheres_count_along_all_axes():
+    """Two equal spheres press on each other with F; a load across it on one: mean of |F|, |f - F|, over F."""
+    disks.new_scene(dt=1e-3)
+    spheres.sphere((0, 0, 0)), spheres.sphere((0, 0, 0.95))
+    spheres.loop()
+    loop = grain_loop.use_grain_loop(watched=[1])
+    disks.run(1)
+    force = np.linalg.norm(loop.presentContacts()["normal_force"][0])
+    loop.setLoad(1, (0, 0, -force / 4))
+    assert utils.unbalancedForce() == pytest.approx((1 + 3 / 4) / 2, rel=1e-12)
+    loop.setLoad(1, (0, force, 0))
+    assert utils.unbalancedForce(useMaxForce=True) == pytest.approx(math.sqrt(2), rel=1e-12)
 
 
 def test_a_force_that_is_gone_between_steps_is_not_taken_for_none():

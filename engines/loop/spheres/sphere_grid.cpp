@@ -2,33 +2,12 @@
 #include "engines/loop/spheres/sphere_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace graindrive::loop {
 
 namespace {
 
-constexpr int cells_needed_when_periodic = 3;  // fewer, and a pair would be met through two of its images
-constexpr int cells_across_tile = 16;          // a slab of rows: 16 x 16 cells, some 50 kB
-
-GridAxis make_axis(double low, double high, bool periodic, double reach, char name)
-{
-	GridAxis a;
-	a.low = low;
-	a.length = high - low;
-	a.periodic = periodic;
-	a.cells = std::max(1, static_cast<int>(std::min(a.length / reach, 1e6)));
-	if (periodic && a.cells < cells_needed_when_periodic) {
-		std::ostringstream message;
-		message << "a periodic box must be at least " << cells_needed_when_periodic * reach << " m long in " << name
-				<< " (three of the largest free spheres, with skin), got " << a.length << " m; lengthen it";
-		throw std::invalid_argument(message.str());
-	}
-	a.per_length = a.length > 0 ? a.cells / a.length : 0;
-	return a;
-}
+constexpr int cells_across_tile = 16;  // a slab of rows: 16 x 16 cells, some 50 kB
 
 int tile_size(int cells)
 {
@@ -45,12 +24,12 @@ CellPlace SphereGrid::place(std::uint32_t cell) const
 	return { s, tile / tiles_f() * tile_m + m, tile % tiles_f() * tile_f + f };
 }
 
-void SphereGrid::lay(const SphereRow* rows, std::uint32_t n_free, const SphereBox& box, double reach)
+void SphereGrid::lay(const SphereRow* rows, std::uint32_t n_free, const geometry::Cell<3>& cell, double reach)
 {
 	double low[3], high[3];
 	for (int k = 0; k < 3; ++k) {
-		low[k] = box.low[k], high[k] = box.high[k];
-		if (box.periodic[k]) continue;
+		low[k] = cell.low[k], high[k] = cell.high[k];
+		if (cell.periodic[k]) continue;
 		low[k] = high[k] = n_free ? rows[0].x[k] : 0;
 		for (std::uint32_t i = 0; i < n_free; ++i)
 			low[k] = std::min(low[k], rows[i].x[k]), high[k] = std::max(high[k], rows[i].x[k]);
@@ -61,7 +40,8 @@ void SphereGrid::lay(const SphereRow* rows, std::uint32_t n_free, const SphereBo
 	for (int attempt = 0; attempt < 60; ++attempt, stretch *= 1.3) {
 		for (int q = 0; q < 3; ++q) {
 			const int k = axis[q];
-			along[q] = make_axis(low[k], high[k], box.periodic[k], reach * (box.periodic[k] ? 1 : stretch), "xyz"[k]);
+			along[q] =
+				GridAxis::over(low[k], high[k], cell.periodic[k], reach * (cell.periodic[k] ? 1 : stretch), n_free, "xyz"[k]);
 		}
 		if (double(along[0].cells) * along[1].cells * along[2].cells <= enough) break;
 	}

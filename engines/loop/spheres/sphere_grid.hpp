@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "engines/loop/cell_grid.hpp"
+#include "engines/geometry/cell.hpp"
+#include "engines/loop/grid_axis.hpp"
 #include "engines/loop/spheres/sphere_row.hpp"
-#include "engines/loop/spheres/sphere_scene.hpp"
 
 namespace graindrive::loop {
 
@@ -31,14 +31,14 @@ struct SphereGrid {
 		return ((tile * along[0].cells + s) * tile_m + m % tile_m) * tile_f + f % tile_f;
 	}
 	CellPlace place(std::uint32_t cell) const;  ///< may lie beyond the grid's end, where a tile does
-	std::uint32_t cell_of(const double x[3]) const
+	std::uint32_t cell_of(const geometry::Vec<3>& x) const
 	{
 		return index(along[0].cell(x[axis[0]]), along[1].cell(x[axis[1]]), along[2].cell(x[axis[2]]));
 	}
 
 	/// Lays the grid over the free spheres; cells are at least `reach` wide.
 	/// @throws std::invalid_argument where a periodic side is shorter than three cells
-	void lay(const SphereRow* rows, std::uint32_t n_free, const SphereBox& box, double reach);
+	void lay(const SphereRow* rows, std::uint32_t n_free, const geometry::Cell<3>& cell, double reach);
 
 	/// Order in which the free spheres should lie in memory: order[new place] = old place. Fills `start`.
 	void sort(const SphereRow* rows, std::uint32_t n_free, std::vector<std::uint32_t>& order);

@@ -1,9 +1,15 @@
 /// Chooses the inner functions of the loop over spheres for the processor that the program finds itself on.
 #include "engines/loop/spheres/sphere_kernel.hpp"
 
+#include <stdexcept>
+
+#include "engines/laws/sphere_terms.hpp"
+
 namespace graindrive::loop {
 
-SphereKernel choose_sphere_kernel(const KernelChoice& choice)
+namespace {
+
+SphereKernel kernel_of_processor(const KernelChoice& choice)
 {
 	switch (wanted_processor()) {
 	case Processor::avx512:
@@ -13,6 +19,18 @@ SphereKernel choose_sphere_kernel(const KernelChoice& choice)
 	default:
 		return sphere_kernel_portable(choice);
 	}
+}
+
+}  // namespace
+
+SphereKernel choose_sphere_kernel(const KernelChoice& choice)
+{
+	const SphereKernel kernel = kernel_of_processor(choice);
+	if (!kernel.sweep)
+		throw std::invalid_argument("the loop over spheres knows the laws " +
+									laws::listed(laws::names_where(laws::is_for_spheres), " and ") +
+									"; the others are for disks, or for YADE's own loop");
+	return kernel;
 }
 
 }  // namespace graindrive::loop

@@ -1,23 +1,19 @@
 /// The inner functions of the loop over spheres, as pointers: one set for each processor generation, law and precision.
 #pragma once
 #include "engines/loop/spheres/sphere_row.hpp"
-#include "engines/loop/spheres/sphere_scene.hpp"
+#include "engines/loop/step_motion.hpp"
 
 namespace graindrive::loop {
 
 /// What all threads share in a step.
-struct SphereStep {
+struct SphereStep : StepMotion<3> {
 	SphereRow* rows;
-	const double* inverse_masses;             ///< by row [1/kg]; 0 for held spheres, which no block contains
+	const double* inverse_masses;             ///< by row [1/kg]
 	double length[3]{}, inverse_length[3]{};  ///< periods [m] and [1/m], 0 where not periodic
-	double dt = 0;                            ///< time step of the springs [s]
-	double kick = 0;                          ///< time over which forces act on velocities [s]
-	double drift = 0;                         ///< time over which velocities move positions [s]
-	double gravity[3]{};                      ///< [m/s^2]
-	double spin_response = 0;                 ///< m R^2 / I: 5/2 for spheres, 0 where they may not rotate
 	std::uint32_t n_free = 0;
-	const SphereLaw* law;
+	const void* law;        ///< the law of `KernelChoice`, in numbers of the precision
 	double* travelled;      ///< by block: bound on any sphere's way since pairs were selected [m]
+	const Vec<3>* drifts;   ///< by block: the velocity against which that is meant [m/s]
 	const double* allowed;  ///< by block: how long that may grow before they must be selected anew [m]
 };
 
@@ -55,7 +51,8 @@ SphereKernel sphere_kernel_for_avx512(const KernelChoice&);
 SphereKernel sphere_kernel_for_avx2(const KernelChoice&);
 SphereKernel sphere_kernel_portable(const KernelChoice&);
 
-/// The best kernel this processor can run; GRAINDRIVE_PROCESSOR asks for less, see choose_kernel.
+/// The best kernel this processor can run; GRAINDRIVE_PROCESSOR asks for less, see wanted_processor.
+/// @throws std::invalid_argument for a law that is for disks only
 SphereKernel choose_sphere_kernel(const KernelChoice&);
 
 }  // namespace graindrive::loop

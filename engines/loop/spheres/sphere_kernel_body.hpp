@@ -30,13 +30,20 @@ private:
 	static constexpr std::uint32_t packs_at_once = 12;
 	static constexpr std::uint32_t prefetched_ahead = 96;  // pairs
 
-	static Law narrowed(const SphereStep& step);
+	/// Number by number: from a copy as a whole the compiler fuses other products, and results would differ in the last bit.
+	static inline Law law_of(const SphereStep& step)
+	{
+		Law law{};
+		const Law& given = *static_cast<const Law*>(step.law);
+		Law::constants([&](const laws::Quantity&, auto constant) { law.*constant = given.*constant; });
+		return law;
+	}
 
 	/// Early pairs and sweeps share one copy of the machine code: in another the compiler may fuse another product of a sum, and a pair
 	/// would be rounded by where it is computed, that is by the number of threads.
 	__attribute__((flatten, noipa)) static bool run(const SphereStep& step, const SphereShare& share, bool moving)
 	{
-		const Law law = narrowed(step);
+		const Law law = law_of(step);
 		const Difference difference(step.rows, step.length, step.inverse_length);
 		const LineAdder adder(step.rows);
 		const std::uint32_t blocks = moving ? share.block_end - share.block_begin : 1;
@@ -134,7 +141,7 @@ private:
 	}
 	static inline void store(const Four& four, double* to) { std::memcpy(__builtin_assume_aligned(to, 32), &four, sizeof four); }
 
-	/// Kicks and drifts a block; returns a bound on the way of any of its spheres [m].
+	/// Kicks and drifts a block; returns a bound on the way of any of its spheres against the block's drift [m].
 	static inline double move_block(const SphereStep& step, std::uint32_t block)
 	{
 		const std::uint32_t first = block * grains_per_block,
@@ -142,10 +149,11 @@ private:
 		const double turn = step.kick * step.spin_response;
 		const Four kick = { step.kick, step.kick, step.kick, turn }, drift = { step.drift, step.drift, step.drift, 0 };
 		const Four fall = { step.gravity[0] * step.kick, step.gravity[1] * step.kick, step.gravity[2] * step.kick, 0 };
-		const Four zero = {};
+		const geometry::Vec<3>& along = step.drifts[block];
+		const Four zero = {}, common = { along[0], along[1], along[2], 0 };
 		Four highest = {};
 		for (std::uint32_t i = first; i < end; ++i) {
-			double* row = step.rows[i].x;
+			double* row = step.rows[i].x.coordinate;
 			const double inverse_mass = step.inverse_masses[i];
 			const Four lower = load(row + 8), upper = load(row + 12);  // surface y z, force x y; force z, turn x y z
 			const Four force = __builtin_shufflevector(lower, upper, 2, 3, 4, 5),
@@ -155,42 +163,12 @@ private:
 			store(velocity, row + 4);
 			store(__builtin_shufflevector(lower, zero, 0, 1, 4, 4) + turns * (inverse_mass * turn), row + 8);
 			store(zero, row + 12);
-			const Four square = velocity * velocity;
+			const Four against = velocity - common, square = against * against;
 			highest = square > highest ? square : highest;
 		}
 		return std::sqrt(highest[0] + highest[1] + highest[2]) * step.drift;
 	}
 };
-
-template <class P>
-laws::HertzHistory<P> narrow(const laws::HertzHistory<Real>& l)
-{
-	return { P(l.k_n), P(l.k_t), P(l.gamma_n), P(l.gamma_t), P(l.mu) };
-}
-template <class P>
-laws::HertzRestitution<P> narrow(const laws::HertzRestitution<Real>& l)
-{
-	return { P(l.effective_young), P(l.tangential_ratio), P(l.damping_fraction), P(l.mu) };
-}
-template <class P>
-laws::SpringDashpot<P> narrow(const laws::SpringDashpot<Real>& l)
-{
-	return { P(l.k_n), P(l.k_t), P(l.damping), P(l.mu) };
-}
-
-template <class Law, class P, bool Friction>
-Law SphereBody<Law, P, Friction>::narrowed(const SphereStep& step)
-{
-	return std::visit(
-		[](const auto& stored) -> Law {
-			const auto candidate = narrow<P>(stored);
-			if constexpr (std::is_same_v<std::decay_t<decltype(candidate)>, Law>)
-				return candidate;
-			else
-				return Law{};
-		},
-		*step.law);
-}
 
 template <template <class> class Law, class P, bool Friction>
 SphereKernel sphere_kernel_of()
@@ -202,23 +180,24 @@ SphereKernel sphere_kernel_of()
 template <template <class> class Law>
 SphereKernel sphere_kernel_of(const KernelChoice& choice)
 {
-	if (choice.precision == Precision::single)
-		return choice.friction ? sphere_kernel_of<Law, float, true>() : sphere_kernel_of<Law, float, false>();
-	return choice.friction ? sphere_kernel_of<Law, double, true>() : sphere_kernel_of<Law, double, false>();
-}
-
-/// One set of kernels, for the instructions this file is compiled for.
-SphereKernel sphere_kernel_compiled_here(const KernelChoice& choice)
-{
-	switch (choice.law) {
-	case 0:
-		return sphere_kernel_of<laws::HertzHistory>(choice);
-	case 1:
-		return sphere_kernel_of<laws::HertzRestitution>(choice);
-	default:
-		return sphere_kernel_of<laws::SpringDashpot>(choice);
+	if constexpr (!laws::is_for_spheres(Law<Real>{})) {
+		return {};
+	} else {
+		if (choice.precision == Precision::single)
+			return choice.friction ? sphere_kernel_of<Law, float, true>() : sphere_kernel_of<Law, float, false>();
+		return choice.friction ? sphere_kernel_of<Law, double, true>() : sphere_kernel_of<Law, double, false>();
 	}
 }
+
+template <template <class> class... Law>
+SphereKernel sphere_kernel_of(laws::LawList<Law...>, const KernelChoice& choice)
+{
+	constexpr SphereKernel (*of_law[])(const KernelChoice&) = { &sphere_kernel_of<Law>... };
+	return of_law[choice.law](choice);
+}
+
+/// One set of kernels, for the instructions this file is compiled for; none for a law that is for disks only.
+SphereKernel sphere_kernel_compiled_here(const KernelChoice& choice) { return sphere_kernel_of(laws::Laws{}, choice); }
 
 }  // namespace
 }  // namespace graindrive::loop

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "engines/laws/sphere_terms.hpp"
 
@@ -69,8 +70,9 @@ struct SpherePairs::Layer {
 			put(link, partner.wrapped(), from.spring[0][k], from.spring[1][k], from.spring[2][k], from.stiffness[k],
 				from.damping[k]);
 		} else if (const KeptPair* kept = source.kept ? source.kept->of(a, b) : nullptr) {
-			const laws::PairConstants constants =
-				source.as_listed ? constants_of(a, b) : laws::PairConstants{ kept->stiffness, kept->damping };
+			const laws::PairConstants constants = source.as_listed || std::isnan(kept->stiffness)
+			                                          ? constants_of(a, b)
+			                                          : laws::PairConstants{ kept->stiffness, kept->damping };
 			put(link, partner.wrapped(), kept->spring[0], kept->spring[1], kept->spring[2], constants.stiffness,
 				constants.damping);
 		} else {
@@ -81,11 +83,17 @@ struct SpherePairs::Layer {
 
 	laws::PairConstants constants_of(std::uint32_t a, std::uint32_t b) const
 	{
-		const SphereState& s = source.state;
-		const double r_a = s.rows[a].radius, r_b = s.rows[b].radius, held_mass = source.scene.spheres[s.index_of[b]].mass;
-		const double inverse_mass = s.inverse_masses[a] + (b < s.n_free ? s.inverse_masses[b] : 1 / held_mass);
-		return std::visit([&](const auto& law) { return laws::pair_constants(law, r_a * r_b / (r_a + r_b), 1 / inverse_mass); },
-			source.scene.law);
+		const State<3>& s = source.state;
+		const double radius = laws::effective_radius(s.rows[a].radius, s.rows[b].radius);
+		const double mass = laws::effective_mass(s.inverse_masses[a] + s.inverse_masses[b]);
+		return std::visit(
+			[&](const auto& law) {
+				if constexpr (laws::is_for_spheres(std::decay_t<decltype(law)>{}))
+					return laws::pair_constants(law, radius, mass);
+				else
+					return laws::PairConstants{};  // no kernel runs it
+			},
+			s.scene.law);
 	}
 
 	/// Fills up to a whole group with pairs that never touch.
@@ -95,71 +103,79 @@ struct SpherePairs::Layer {
 	}
 };
 
-PairCounts3 SpherePairs::select(const Source& source)
+PairCounts SpherePairs::select(const Source& source)
 {
-	precision = source.scene.precision;
+	precision = source.state.scene.precision;
 	return precision == Precision::double_ ? select_in<double>(source) : select_in<float>(source);
 }
 
 template <class P>
-PairCounts3 SpherePairs::select_in(const Source& source)
+PairCounts SpherePairs::select_in(const Source& source)
 {
 	constexpr std::uint32_t group_size = PairGroup<P>::size;
-	const SphereState& s = source.state;
-	const std::uint32_t first_row = source.block_begin * grains_per_block,
-						range_end = std::min(source.block_end * grains_per_block, s.n_free);
-	const std::uint32_t candidates_end = s.candidate_begin[range_end];
-	first_candidate = s.candidate_begin[first_row];
+	const State<3>& s = source.state;
+	const SpherePairState& pairs = s.pairs;
+	const bool of_members = source.owner_begin >= s.n_free;
+	owner_begin = source.owner_begin, owner_end = source.owner_end;
+	const std::uint32_t range_end = of_members ? owner_begin : owner_end;  // pairs with partners beyond are early
+	const std::uint32_t candidates_end = pairs.candidate_begin[owner_end];
+	first_candidate = pairs.candidate_begin[owner_begin];
 	place.resize(candidates_end - first_candidate, 0);
 	memory.swap(old_memory);
 	const std::size_t most = (candidates_end - first_candidate + 4 * group_size) / group_size + groups_read_ahead;
 	wrapped.clear(), block_pair_end.clear(), block_early_end.clear(), early.clear(), early_owner.clear(), early_links.clear();
 	Layer<P> layer{ source, static_cast<PairGroup<P>*>(memory.with_room_for(most * sizeof(PairGroup<P>))),
 		static_cast<const PairGroup<P>*>(old_memory.data()), wrapped };
-	PairCounts3 counts;
+	PairCounts counts;
 	std::vector<std::uint32_t> old_early;
-	auto listed = std::lower_bound(s.listed.begin(), s.listed.end(), first_candidate,
+	auto listed = std::lower_bound(pairs.listed.begin(), pairs.listed.end(), first_candidate,
 		[](const ListedPair& pair, std::uint32_t candidate) { return pair.candidate < candidate; });
+	const auto take_pairs_of = [&](std::uint32_t a) {
+		const SphereRow& one = s.rows[a];
+		const std::uint32_t party = s.party_of(a);
+		const double own = s.allowed[party];
+		for (std::uint32_t c = pairs.candidate_begin[a]; c < pairs.candidate_begin[a + 1]; ++c) {
+			const Partner partner = pairs.partners[c];
+			const std::uint32_t b = partner.row();
+			const SphereRow& other = s.rows[b];
+			Vec<3> d = other.x - one.x;
+			if (partner.wrapped()) d = s.scene.cell.nearest(d).at;
+			const double square = geometry::squared_norm(d), touch = one.radius + other.radius;
+			const std::uint32_t other_party = s.party_of(b);
+			const double approach = other_party == party ? 0 : length(s.drifts[other_party] - s.drifts[party]) * source.horizon;
+			const double budget = own + s.allowed[other_party] + approach;
+			const double half = touch + std::max(budget / 2, std::min(budget, 2 * source.smallest_budget));
+			bool near = square < (touch + budget) * (touch + budget);
+			counts.by_half_budgets += square < half * half;
+			std::uint32_t& at = place[c - first_candidate];
+			if (source.as_listed) {
+				near = listed != pairs.listed.end() && listed->candidate == c;
+				listed += near;
+			}
+			counts.selected += near;
+			const std::uint32_t old_place = at;
+			at = 0;
+			if (!near) continue;
+			if (b >= range_end) {
+				early.push_back(c), early_owner.push_back(a), old_early.push_back(old_place);
+				continue;
+			}
+			layer.put(a, partner, old_place);
+			at = layer.next;  // 1 + the place
+		}
+	};
 	for (std::uint32_t block = source.block_begin; block < source.block_end; ++block) {
 		const std::uint32_t end = std::min((block + 1) * grains_per_block, s.n_free);
-		const double own = s.allowed[block];
-		for (std::uint32_t a = block * grains_per_block; a < end; ++a) {
-			const SphereRow& one = s.rows[a];
-			for (std::uint32_t c = s.candidate_begin[a]; c < s.candidate_begin[a + 1]; ++c) {
-				const Partner partner = s.partners[c];
-				const std::uint32_t b = partner.row();
-				const SphereRow& other = s.rows[b];
-				double d[3] = { other.x[0] - one.x[0], other.x[1] - one.x[1], other.x[2] - one.x[2] };
-				if (partner.wrapped()) separation(one, other, source.scene.box, d);
-				const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], touch = one.radius + other.radius;
-				const double budget = own + s.allowed[s.party_of(b)];
-				const double half = touch + std::max(budget / 2, std::min(budget, 2 * source.smallest_budget));
-				bool near = square < (touch + budget) * (touch + budget);
-				counts.by_half_budgets += square < half * half;
-				std::uint32_t& at = place[c - first_candidate];
-				if (source.as_listed) {
-					near = listed != s.listed.end() && listed->candidate == c;
-					listed += near;
-				}
-				counts.selected += near;
-				const std::uint32_t old_place = at;
-				at = 0;
-				if (!near) continue;
-				if (b >= range_end) {
-					early.push_back(c), early_owner.push_back(a), old_early.push_back(old_place);
-					continue;
-				}
-				layer.put(a, partner, old_place);
-				at = layer.next;  // 1 + the place
-			}
-		}
+		for (std::uint32_t a = block * grains_per_block; a < end; ++a) take_pairs_of(a);
 		block_pair_end.push_back(layer.next);
 		block_early_end.push_back(early.size());
 	}
+	if (of_members)
+		for (std::uint32_t a = owner_begin; a < owner_end; ++a) take_pairs_of(a);
 	layer.pad();
 	view.early_begin = layer.next;
 	for (std::size_t e = 0; e < early.size(); ++e) {
-		layer.put(early_owner[e], s.partners[early[e]], old_early[e]);
+		layer.put(early_owner[e], pairs.partners[early[e]], old_early[e]);
 		place[early[e] - first_candidate] = layer.next;
 		early_links.push_back(layer.groups[(layer.next - 1) / group_size].links[(layer.next - 1) % group_size]);
 	}
@@ -188,6 +204,33 @@ KeptPair SpherePairs::pair_at(std::uint32_t at) const
 	};
 	return precision == Precision::double_ ? read(static_cast<const PairGroup<double>*>(memory.data()))
 	                                       : read(static_cast<const PairGroup<float>*>(memory.data()));
+}
+
+std::size_t SpherePairs::group_bytes() const
+{
+	return precision == Precision::double_ ? sizeof(PairGroup<double>) : sizeof(PairGroup<float>);
+}
+
+void SpherePairs::forget_springs()
+{
+	const auto forget = [&](auto* groups) {
+		for (std::uint32_t g = 0; g < places() / group_size(); ++g)
+			for (auto& component : groups[g].spring) std::fill(std::begin(component), std::end(component), 0);
+	};
+	precision == Precision::double_ ? forget(static_cast<PairGroup<double>*>(memory.data()))
+									: forget(static_cast<PairGroup<float>*>(memory.data()));
+}
+
+std::vector<char> SpherePairs::bytes_from(std::uint32_t first) const
+{
+	const char* groups = static_cast<const char*>(memory.data());
+	return { groups + first / group_size() * group_bytes(), groups + places() / group_size() * group_bytes() };
+}
+
+void SpherePairs::put_back(std::uint32_t first, const std::vector<char>& bytes)
+{
+	if (!bytes.empty())
+		std::memcpy(static_cast<char*>(memory.data()) + first / group_size() * group_bytes(), bytes.data(), bytes.size());
 }
 
 }  // namespace graindrive::loop

@@ -4,7 +4,8 @@
 #pragma once
 #include <cmath>
 
-#include "engines/loop/spheres/sphere_state.hpp"
+#include "engines/loop/spheres/sphere_kernel.hpp"
+#include "engines/loop/views.hpp"
 
 namespace graindrive::loop {
 
@@ -39,29 +40,37 @@ struct KeptPairs {
 	const KeptPair* of(std::uint32_t owner, std::uint32_t partner) const;
 };
 
-struct PairCounts3 {
-	std::size_t selected = 0, by_half_budgets = 0;  ///< by_half_budgets: if spheres had half the way to go
-};
-
 class SpherePairs {
 public:
 	/// Where the pairs of a selection come from.
 	struct Source {
-		const SphereState& state;
-		const SphereScene& scene;
-		std::uint32_t block_begin, block_end;
-		PairLink dummy;          ///< a pair that never touches
-		const KeptPairs* kept;   ///< after a search; else springs stay with their candidates
-		double smallest_budget;  ///< [m]
-		bool as_listed;          ///< select what `state.listed` says, not what is near
+		const State<3>& state;
+		std::uint32_t block_begin, block_end;  ///< blocks of free spheres that the thread moves; none for members of bodies
+		std::uint32_t owner_begin, owner_end;  ///< rows whose pairs these are
+		PairLink dummy;                        ///< a pair that never touches
+		const KeptPairs* kept;                 ///< after a search; else springs stay with their candidates
+		double smallest_budget;                ///< [m]
+		double horizon;                        ///< for how long the selection may last [s]
+		bool as_listed;                        ///< select what `state.pairs.listed` says, not what is near
 	};
 
-	PairCounts3 select(const Source& source);
+	PairCounts select(const Source& source);
 	/// Forgets places of candidates: after a search candidates are others.
 	void forget_places() { place.clear(); }
 	/// Calls visit(owner row, partner row, KeptPair) for every selected pair.
 	template <class Visit>
-	void each_pair(const SphereState& state, const Visit& visit) const;
+	void each_pair(const State<3>& state, const Visit& visit) const;
+	/// Pairs that touch neither a surface nor each other are none: how many places there are, dummies included.
+	std::uint32_t places() const { return view.early_end; }
+	/// Calls visit(owner row, partner row, candidate, place).
+	template <class Visit>
+	void each_place(const State<3>& state, const Visit& visit) const;
+	/// The spring at a place.
+	KeptPair pair_at(std::uint32_t place) const;
+	void forget_springs();
+	/// What stands at the places from `first` on, and back.
+	std::vector<char> bytes_from(std::uint32_t first) const;
+	void put_back(std::uint32_t first, const std::vector<char>& bytes);
 
 	SphereShare view;                   ///< what the kernels see
 	std::vector<PairLink> early_links;  ///< byte offsets of the early pairs' rows
@@ -73,28 +82,39 @@ private:
 	std::vector<std::uint32_t> block_pair_end, block_early_end;
 	std::vector<std::uint32_t> early;  // candidates
 	std::vector<std::uint32_t> early_owner;
-	AlignedVector<ForceLine> early_forces;
-	std::uint32_t first_candidate = 0;
+	StreamedVector<ForceLine> early_forces;
+	std::uint32_t first_candidate = 0, owner_begin = 0, owner_end = 0;
 	std::vector<std::uint32_t> place;  // 1 + the place of each candidate of the share; 0: not selected
 
 	template <class P>
-	PairCounts3 select_in(const Source& source);
+	PairCounts select_in(const Source& source);
 	template <class P>
 	struct Layer;
-	KeptPair pair_at(std::uint32_t place) const;
+	std::size_t group_bytes() const;
+	std::uint32_t group_size() const
+	{
+		return precision == Precision::double_ ? PairGroup<double>::size : PairGroup<float>::size;
+	}
 };
 
 template <class Visit>
-void SpherePairs::each_pair(const SphereState& state, const Visit& visit) const
+void SpherePairs::each_place(const State<3>& state, const Visit& visit) const
 {
-	const std::uint32_t end = std::min(view.block_end * grains_per_block, state.n_free);
-	for (std::uint32_t a = view.block_begin * grains_per_block; a < end; ++a)
-		for (std::uint32_t c = state.candidate_begin[a]; c < state.candidate_begin[a + 1]; ++c) {
-			if (c - first_candidate >= place.size() || !place[c - first_candidate]) continue;
-			KeptPair pair = pair_at(place[c - first_candidate] - 1);
-			pair.partner = state.partners[c].row();
-			visit(a, c, pair);
-		}
+	const SpherePairState& pairs = state.pairs;
+	for (std::uint32_t a = owner_begin; a < owner_end; ++a)
+		for (std::uint32_t c = pairs.candidate_begin[a]; c < pairs.candidate_begin[a + 1]; ++c)
+			if (c - first_candidate < place.size() && place[c - first_candidate])
+				visit(a, pairs.partners[c].row(), c, place[c - first_candidate] - 1);
+}
+
+template <class Visit>
+void SpherePairs::each_pair(const State<3>& state, const Visit& visit) const
+{
+	each_place(state, [&](std::uint32_t owner, std::uint32_t partner, std::uint32_t candidate, std::uint32_t at) {
+		KeptPair pair = pair_at(at);
+		pair.partner = partner;
+		visit(owner, candidate, pair);
+	});
 }
 
 }  // namespace graindrive::loop

@@ -5,18 +5,19 @@
 #pragma once
 #include <cstdint>
 
-#include "engines/loop/grain_row.hpp"
-#include "engines/loop/row_layout.hpp"
+#include "engines/geometry/vec.hpp"
+#include "engines/loop/processor.hpp"
+#include "engines/loop/spheres/row_layout.hpp"
 
 namespace graindrive::loop {
 
 struct alignas(128) SphereRow {
-	double x[3];        ///< centre [m]; not wrapped between two searches for neighbours
-	double radius;      ///< [m]
-	double v[3];        ///< velocity, half a step behind the position [m/s]
-	double surface[3];  ///< radius * spin [m/s]
-	double force[3];    ///< sum of the contact forces so far [N]
-	double turn[3];     ///< sum of n x F_t: torque over radius [N]
+	geometry::Vec<3> x;        ///< centre [m]; not wrapped between two searches for neighbours
+	double radius;             ///< [m]
+	geometry::Vec<3> v;        ///< velocity, half a step behind the position [m/s]
+	geometry::Vec<3> surface;  ///< radius * spin [m/s]
+	geometry::Vec<3> force;    ///< sum of the contact forces so far [N]
+	geometry::Vec<3> turn;     ///< sum of n x F_t: torque over radius [N]
 };
 static_assert(sizeof(SphereRow) == 128, "one row, two cache lines");
 

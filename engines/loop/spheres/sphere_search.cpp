@@ -18,26 +18,49 @@ struct Run {
 	std::uint32_t begin, end;
 };
 
-double square_of(const double d[3]) { return d[0] * d[0] + d[1] * d[1] + d[2] * d[2]; }
+bool in_order(const MemberPair& a, const MemberPair& b) { return a.owner != b.owner ? a.owner < b.owner : a.member < b.member; }
 
 }  // namespace
 
-void SphereSearch::begin(
-	const SphereRow* all, std::uint32_t n_free, std::uint32_t n, const SphereGrid& sorted, const SphereBox& in, double with_skin)
+void SphereSearch::begin(const State<3>& of, const SphereGrid& sorted)
 {
-	rows = all, grid = &sorted, box = &in, skin = with_skin;
-	fill_columns(n_free);
-	held_pairs.clear();
-	double largest = 0;
-	for (std::uint32_t i = 0; i < n_free; ++i) largest = std::max(largest, rows[i].radius);
-	for (std::uint32_t h = n_free; h < n && n_free > 0; ++h) around_held(h, largest);
-	std::sort(held_pairs.begin(), held_pairs.end(),
-		[](const HeldPair& a, const HeldPair& b) { return a.free != b.free ? a.free < b.free : a.held < b.held; });
+	state = &of, grid = &sorted;
+	fill_columns();
+	with_members.clear();
+	for (std::uint32_t m = state->n_free; m < state->n && state->n_free > 0; ++m) around_member(m);
+	std::sort(with_members.begin(), with_members.end(), in_order);
+	between_members();
+}
+
+/// Within the skin, by the nearest image.
+bool SphereSearch::near(std::uint32_t a, std::uint32_t b, bool& wrapped) const
+{
+	const SphereRow &one = state->rows[a], &other = state->rows[b];
+	const geometry::Image<3> d = state->scene.cell.nearest(other.x - one.x);
+	const double limit = one.radius + other.radius + state->skin;
+	wrapped = d.wrapped;
+	return geometry::squared_norm(d.at) < limit * limit;
+}
+
+void SphereSearch::between_members()
+{
+	members_alone.clear();
+	const auto fixed = [&](std::uint32_t row) { return state->body_fixed[state->members[row - state->n_free].body] != 0; };
+	const auto body = [&](std::uint32_t row) { return state->members[row - state->n_free].body; };
+	if (state->scene.bodies.size() < 2) return;
+	for (std::uint32_t a = state->n_free; a < state->n; ++a)
+		for (std::uint32_t b = a + 1; b < state->n; ++b) {
+			bool wrapped = false;
+			if (body(a) == body(b) || (fixed(a) && fixed(b)) || !near(a, b, wrapped)) continue;
+			members_alone.push_back({ a, b, wrapped });
+		}
 }
 
 /// From the grid's corner: single precision is then good to 1e-7 of the box, which `rounding` makes up for.
-void SphereSearch::fill_columns(std::uint32_t n_free)
+void SphereSearch::fill_columns()
 {
+	const std::uint32_t n_free = state->n_free;
+	const RowVector<3>& rows = state->rows;
 	double corner[3], extent = 0;
 	for (int q = 0; q < 3; ++q) {
 		corner[grid->axis[q]] = grid->along[q].low;
@@ -51,10 +74,10 @@ void SphereSearch::fill_columns(std::uint32_t n_free)
 	}
 }
 
-void SphereSearch::around_held(std::uint32_t held, double largest_radius)
+void SphereSearch::around_member(std::uint32_t member)
 {
-	const SphereRow& row = rows[held];
-	const double reach = row.radius + largest_radius + skin;
+	const SphereRow& row = state->rows[member];
+	const double reach = row.radius + state->largest_free_radius + state->skin;
 	int first[3], last[3];
 	for (int q = 0; q < 3; ++q) {
 		const GridAxis& axis = grid->along[q];
@@ -66,7 +89,7 @@ void SphereSearch::around_held(std::uint32_t held, double largest_radius)
 		if (2 * reach > axis.length) {
 			std::ostringstream message;
 			message << "a periodic box must be at least " << 2 * reach << " m long in "
-					<< "xyz"[grid->axis[q]] << " for a held sphere of radius " << row.radius << " m, got " << axis.length
+					<< "xyz"[grid->axis[q]] << " for a member of a body with radius " << row.radius << " m, got " << axis.length
 					<< " m; lengthen it";
 			throw std::invalid_argument(message.str());
 		}
@@ -81,13 +104,8 @@ void SphereSearch::around_held(std::uint32_t held, double largest_radius)
 			for (int f = first[2]; f <= last[2]; ++f) {
 				const std::uint32_t c = grid->index(within(0, s), within(1, m), within(2, f));
 				for (std::uint32_t a = grid->start[c]; a < grid->start[c + 1]; ++a) {
-					double d[3];
-					separation(rows[a], row, *box, d);
-					const double limit = row.radius + rows[a].radius + skin;
-					if (square_of(d) >= limit * limit) continue;
 					bool wrapped = false;
-					for (int k = 0; k < 3; ++k) wrapped |= d[k] != row.x[k] - rows[a].x[k];
-					held_pairs.push_back({ a, held, wrapped });
+					if (near(a, member, wrapped)) with_members.push_back({ a, member, wrapped });
 				}
 			}
 }
@@ -118,10 +136,8 @@ void SphereSearch::beyond_tile(std::uint32_t a, const CellPlace& at, std::vector
 			continue;
 		const std::uint32_t c = grid->index(to[0], to[1], to[2]);
 		for (std::uint32_t b = std::max(a + 1, grid->start[c]); b < grid->start[c + 1]; ++b) {
-			double d[3];
-			separation(rows[a], rows[b], *box, d);
-			const double limit = rows[a].radius + rows[b].radius + skin;
-			if (square_of(d) < limit * limit) partners.push_back({ wrapped ? b | Partner::across : b });
+			bool by_image = false;
+			if (near(a, b, by_image)) partners.push_back({ wrapped ? b | Partner::across : b });
 		}
 	}
 }
@@ -134,8 +150,8 @@ void SphereSearch::find(const SphereKernel& kernel, std::uint32_t first_cell, st
 	const std::vector<std::uint32_t>& start = g.start;
 	std::vector<std::uint32_t> room;
 	partners.clear();
-	auto held = std::lower_bound(held_pairs.begin(), held_pairs.end(), start[first_cell],
-		[](const HeldPair& pair, std::uint32_t row) { return pair.free < row; });
+	auto member = std::lower_bound(with_members.begin(), with_members.end(), start[first_cell],
+		[](const MemberPair& pair, std::uint32_t row) { return pair.owner < row; });
 	for (std::uint32_t c = first_cell; c < end_cell; ++c) {
 		if (start[c] == start[c + 1]) continue;
 		const CellPlace at = g.place(c);
@@ -157,7 +173,7 @@ void SphereSearch::find(const SphereKernel& kernel, std::uint32_t first_cell, st
 		                     (g.along[0].periodic && (at.s == 0 || at.s + 1 == g.along[0].cells));
 		room.resize(most + 2 * pack_room);
 		for (std::uint32_t a = start[c]; a < start[c + 1]; ++a) {
-			const float reach = float(rows[a].radius + skin) + rounding;
+			const float reach = float(state->rows[a].radius + state->skin) + rounding;
 			int n = kernel.near(columns, a, a + 1, rest_end, reach, room.data());
 			for (int r = 0; r < n_runs; ++r) n += kernel.near(columns, a, runs[r].begin, runs[r].end, reach, room.data() + n);
 			const std::size_t before = partners.size();
@@ -168,8 +184,8 @@ void SphereSearch::find(const SphereKernel& kernel, std::uint32_t first_cell, st
 				if (partners.size() > before + n)
 					std::sort(partners.begin() + before, partners.end(), [](Partner p, Partner q) { return p.row() < q.row(); });
 			}
-			for (; held != held_pairs.end() && held->free == a; ++held)
-				partners.push_back({ held->wrapped ? held->held | Partner::across : held->held });
+			for (; member != with_members.end() && member->owner == a; ++member)
+				partners.push_back({ member->wrapped ? member->member | Partner::across : member->member });
 			count[a] = partners.size() - before;
 		}
 	}

@@ -2,39 +2,24 @@
 #pragma once
 #include "engines/loop/spheres/sphere_grid.hpp"
 #include "engines/loop/spheres/sphere_kernel.hpp"
+#include "engines/loop/state.hpp"
 
 namespace graindrive::loop {
 
-/// A partner of a candidate pair: the row, and whether the pair is met across a periodic side.
-struct Partner {
-	std::uint32_t bits;
-
-	static constexpr std::uint32_t across = 0x80000000u;
-	std::uint32_t row() const { return bits & ~across; }
-	bool wrapped() const { return bits & across; }
-};
-
-/// b - a by the nearest image [m].
-inline void separation(const SphereRow& a, const SphereRow& b, const SphereBox& box, double d[3])
-{
-	for (int k = 0; k < 3; ++k) {
-		d[k] = b.x[k] - a.x[k];
-		if (box.periodic[k]) d[k] -= box.length(k) * std::nearbyint(d[k] / box.length(k));
-	}
-}
-
-/// A free sphere and a held one.
-struct HeldPair {
-	std::uint32_t free, held;
+/// A pair with a member of a body.
+struct MemberPair {
+	std::uint32_t owner, member;
 	bool wrapped;
 };
 
 class SphereSearch {
 public:
-	/// Free spheres lie first, sorted by `grid`; held ones follow. Makes the columns that the kernel looks through, and the pairs with
-	/// held spheres. @throws std::invalid_argument where a held sphere would meet a free one through two images
-	void begin(
-		const SphereRow* rows, std::uint32_t n_free, std::uint32_t n, const SphereGrid& grid, const SphereBox& box, double skin);
+	/// Free spheres lie first, sorted by `grid`; members of bodies follow. Makes the columns that the kernel looks through, and the
+	/// pairs with members. @throws std::invalid_argument where a member would meet a free sphere through two images
+	void begin(const State<3>& state, const SphereGrid& grid);
+
+	/// The pairs of members of different bodies, sorted.
+	const std::vector<MemberPair>& among_members() const { return members_alone; }
 
 	/// Candidates of the owners in the cells [first, end): `count[owner]` and, one owner behind the other, their partners in order.
 	void find(const SphereKernel& kernel, std::uint32_t first_cell, std::uint32_t end_cell, std::uint32_t* count,
@@ -44,16 +29,16 @@ public:
 	std::uint32_t cell_at(std::uint32_t row) const;
 
 private:
-	const SphereRow* rows = nullptr;
+	const State<3>* state = nullptr;
 	const SphereGrid* grid = nullptr;
-	const SphereBox* box = nullptr;
-	double skin = 0;
 	float rounding = 0;  // by how much the columns may be wrong [m]
 	std::vector<float> column[4];
-	std::vector<HeldPair> held_pairs;
+	std::vector<MemberPair> with_members, members_alone;
 
-	void fill_columns(std::uint32_t n_free);
-	void around_held(std::uint32_t held, double largest_radius);
+	void fill_columns();
+	void around_member(std::uint32_t member);
+	void between_members();
+	bool near(std::uint32_t a, std::uint32_t b, bool& wrapped) const;
 	void beyond_tile(std::uint32_t a, const CellPlace& at, std::vector<Partner>& partners) const;
 };
 

@@ -1,0 +1,142 @@
+/// Settings of GrainLoop that are changed while it runs, the cell, and walls and loads kept as plain numbers for O.save.
+#include <cmath>
+
+#include "engines/loop/GrainLoop.hpp"
+
+namespace graindrive {
+
+namespace {
+
+constexpr const char* kept_by_the_loop[] = { "springs", "wallSprings", "wallSettings" };
+constexpr std::size_t numbers_per_wall = 11;
+
+void append(std::vector<Real>& numbers, const loop::Wall<3>& w)
+{
+	const Real limit = std::isfinite(w.speed_limit) ? w.speed_limit : 0;  // archives hold no infinity
+	numbers.insert(numbers.end(), { Real(int(w.side)), w.position, w.velocity, w.slide[0], w.slide[1], w.slide[2],
+									  Real(w.pressed), w.pressure, w.mass, w.damping, limit });
+}
+
+}  // namespace
+
+/// Called by the property that was set. What the loop keeps for O.save cannot be set under its feet.
+void GrainLoop::assigned(const std::string& name)
+{
+	for (const char* kept : kept_by_the_loop)
+		if (mirror_ && name == kept)
+			throw std::invalid_argument(
+				"GrainLoop." + name +
+				" is kept by the running loop and cannot be set; use setWall, or call sync(), set it after "
+				"read() and go on");
+	settings_changed_ = true;
+}
+
+/// Goes on with settings that Python changed: what the kernels use is changed in the running loop, what decides who is a body by
+/// reading the scene anew.
+void GrainLoop::hear_settings()
+{
+	if (!settings_changed_) return;
+	settings_changed_ = false;
+	if (dimensions != built_dimensions_)
+		throw std::invalid_argument("GrainLoop.dimensions is " + std::to_string(built_dimensions_) +
+									" in the running loop and cannot be changed; call sync(), set it, and then read()");
+	if (watched != built_watched_ || periods != built_periods_) {
+		sync();
+		build();
+		return;
+	}
+	mirror_->change_settings();
+	mirror_->bring_loads();
+	met_engines_.clear();  // `trusted` may be another
+}
+
+/// YADE's cell may deform; GrainLoop's box may not.
+void GrainLoop::require_cell()
+{
+	if (!scene->isPeriodic) return;
+	const yade::Cell& cell = *scene->cell;
+	if (!cell.velGrad.isZero(0) || !cell.nextVelGrad.isZero(0))
+		throw std::invalid_argument(
+			"GrainLoop: O.cell.velGrad deforms the cell, which GrainLoop does not do; set it to zero, or use YADE's loop");
+	Eigen::Matrix<Real, 3, 3> off_diagonal = cell.hSize;
+	off_diagonal.diagonal().setZero();
+	if (!off_diagonal.isZero(0))
+		throw std::invalid_argument("GrainLoop: O.cell is tilted (its hSize has parts off the diagonal); only a box that is not "
+									"sheared can be taken over: O.cell.setBox(x, y, z)");
+	if (mirror_ && cell.hSize != built_cell_) require_periods();
+}
+
+std::vector<loop::Wall<3>> GrainLoop::kept_walls() const
+{
+	std::vector<loop::Wall<3>> all;
+	for (std::size_t k = 0; k + numbers_per_wall <= wallSettings.size(); k += numbers_per_wall) {
+		const Real* n = wallSettings.data() + k;
+		loop::Wall<3> wall;
+		wall.side = loop::Side(int(n[0]));
+		wall.position = n[1], wall.velocity = n[2], wall.slide = { n[3], n[4], n[5] };
+		wall.pressed = n[6] != 0;
+		wall.pressure = n[7], wall.mass = n[8], wall.damping = n[9];
+		if (n[10] > 0) wall.speed_limit = n[10];
+		all.push_back(wall);
+	}
+	return all;
+}
+
+void GrainLoop::keep_walls(const std::vector<loop::Wall<3>>& walls)
+{
+	wallSettings.clear();
+	for (const loop::Wall<3>& wall : walls) append(wallSettings, wall);
+}
+
+std::vector<loop::Wall<3>> GrainLoop::walls() const
+{
+	const Turn turn = take_turn();
+	return mirror_ ? mirror_->walls() : kept_walls();
+}
+
+void GrainLoop::set_wall(const loop::Wall<3>& wall)
+{
+	const Turn turn = take_turn();
+	if (mirror_) return mirror_->set_wall(wall);
+	std::vector<loop::Wall<3>> all;
+	for (const loop::Wall<3>& other : kept_walls())
+		if (other.side != wall.side) all.push_back(other);
+	all.push_back(wall);
+	keep_walls(all);
+}
+
+void GrainLoop::remove_wall(loop::Side side)
+{
+	const Turn turn = take_turn();
+	if (mirror_) return mirror_->remove_wall(side);
+	std::vector<loop::Wall<3>> others;
+	for (const loop::Wall<3>& wall : kept_walls())
+		if (wall.side != side) others.push_back(wall);
+	keep_walls(others);
+}
+
+loop::Side GrainLoop::side_named(const std::string& name) const
+{
+	return dimensions == 3 ? loop::side_named<3>(name) : loop::side_named<2>(name);
+}
+
+void GrainLoop::set_load(int id, const Vector3r& force)
+{
+	const Turn turn = take_turn();
+	running().body_index(id);  // a free grain becomes a body
+	if (mirror_->map.body_of_id[id] < 0)
+		throw std::invalid_argument(
+			"GrainLoop.setLoad: body " + std::to_string(id) + " does not move; free one of its directions first");
+	if (dimensions == 2 && force[2] != 0)
+		throw std::invalid_argument("GrainLoop.setLoad: a load on a disk lies in the plane, got F_z = " +
+									std::to_string(force[2]) + " N; leave it out, or set GrainLoop.dimensions to 3");
+	for (std::size_t k = 0; k + 3 < loads.size(); k += 4)
+		if (int(loads[k]) == id) {
+			loads.erase(loads.begin() + k, loads.begin() + k + 4);
+			break;
+		}
+	loads.insert(loads.end(), { Real(id), force[0], force[1], force[2] });
+	mirror_->bring_loads();
+}
+
+}  // namespace graindrive

@@ -1,0 +1,219 @@
+/// Contacts, motions and works of a step, as the ledger books them.
+#include "engines/loop/books.hpp"
+
+#include <cmath>
+
+#include "engines/loop/guards.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+using geometry::cross;
+using geometry::dot;
+
+bool turns_exactly(const RigidBody<2>&) { return true; }
+bool turns_exactly(const RigidBody<3>& body)
+{
+	const Vec<3>& i = body.inertia;
+	return !(body.turns[0] && body.turns[1] && body.turns[2]) || (i[0] == i[1] && i[1] == i[2]);
+}
+
+double axis_of_spin(double spin, int) { return spin; }
+double axis_of_spin(const Vec<3>& spin, int k) { return spin[k]; }
+
+/// Of a body that turns about one axis, or is a ball.
+double moment_about(const RigidBody<2>& body, int) { return body.inertia; }
+double moment_about(const RigidBody<3>& body, int k)
+{
+	const Vec<3> axis = body.turn.undo(Vec<3>::along(k));
+	double sum = 0;
+	for (int q = 0; q < 3; ++q) sum += body.inertia[q] * axis[q] * axis[q];
+	return sum;
+}
+
+}  // namespace
+
+/// YADE's own laws lengthen what they remember by another velocity than the one that their force works on, and what damping takes depends
+/// on the sum of all forces: neither has entries that are exact. Nor has a body that tumbles, whose spin changes without a torque.
+template <int D>
+void require_explicable(const Scene<D>& scene)
+{
+	const auto remembers_force = [](const auto& law) { return law.remembers_force; };
+	const auto remembers_length = [](const auto& law) { return !law.remembers_force; };
+	if (std::visit(remembers_force, scene.law))
+		throw std::invalid_argument("the energy ledger knows no exact entries for the laws " + laws::laws_that_remember_forces() +
+									"; switch trackEnergy off, or take " +
+									laws::listed(laws::names_where(remembers_length), " or "));
+	if (scene.damping > 0)
+		throw std::invalid_argument(
+			sentence("the energy ledger needs damping = 0, got ", scene.damping, "; switch trackEnergy off, or damping"));
+	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+		if (!turns_exactly(scene.bodies[b]))
+			throw std::invalid_argument(sentence("the energy ledger knows no exact entries for a body with different moments of "
+												 "inertia that turns about all axes, got body ",
+				b, "; switch trackEnergy off, or block two of its rotations"));
+}
+
+/// Velocity and surface speed of a grain after the step, where it was at the step.
+template <int D>
+SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
+{
+	const Row<D>&row = state.rows[at], &before = rows[at];
+	if (at < state.n_free) return motion_of(row);
+	const Member<D>& member = state.members[at - state.n_free];
+	const RigidBody<D>&body = state.scene.bodies[member.body], &was = bodies[member.body];
+	const Vec<D> arm = before.x - member.shift - was.place;
+	return { body.velocity + cross(body.spin, arm), body.spin * row.radius };
+}
+
+/// A contact at a step: `before` is what the law was told, `after` belongs to the half step after it.
+template <int D>
+void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
+	const RelativeMotion<D>& after, const Tangent<D>& slip)
+{
+	met.push_back(
+		{ key, at.overlap, radius, mass, at.normal, before.normal, after.normal, before.tangential, after.tangential, slip });
+}
+
+template <int D>
+void Books<D>::meet_pairs()
+{
+	for (const auto& [i, j, slip] : selected) {
+		const Row<D>&a = rows[i], &b = rows[j];
+		const Placement<D> at = placement<D>(a, b, state.scene.cell);
+		if (!(at.overlap > 0)) continue;
+		const std::uint64_t one = std::min(state.index_of[i], state.index_of[j]),
+							other = std::max(state.index_of[i], state.index_of[j]);
+		const double mass = [&] {
+			if constexpr (D == 2) return laws::effective_mass(a.inverse_mass + b.inverse_mass);
+			return laws::effective_mass(state.inverse_mass(i) + state.inverse_mass(j));
+		}();
+		meet(one << 32 | other, at, laws::effective_radius(a.radius, b.radius), mass,
+			relative_motion(at.normal, motion_of(a), motion_of(b)), relative_motion(at.normal, motion_after(i), motion_after(j)),
+			slip);
+	}
+}
+
+template <int D>
+void Books<D>::meet_surface(const SurfaceTouch<D>& touch)
+{
+	constexpr std::uint64_t last = 0xffffffff;
+	const std::uint32_t at = state.row_of[touch.grain];
+	const Row<D>& row = rows[at];
+	const Placement<D> place{ touch.normal, touch.overlap };
+	SurfaceMotion<D> before, after;
+	std::uint64_t side = 0;
+	if (surfaces.is_wall(touch.surface)) {
+		const Wall<D>&was = walls[touch.surface], &is = state.scene.walls[touch.surface];
+		before = { was.surface_velocity(), {} }, after = { is.surface_velocity(), {} };
+		side = last - std::uint64_t(was.side);
+	} else {
+		const int b = surfaces.solid(touch.surface).body;
+		const RigidBody<D>&was = bodies[b], &is = state.scene.bodies[b];
+		const Vec<D> arm =
+			surfaces.seen_from_solid(touch.surface, was, row.x) - was.place + (row.radius - touch.overlap / 2) * touch.normal;
+		before = { was.velocity + cross(was.spin, arm), {} }, after = { is.velocity + cross(is.spin, arm), {} };
+		side = last - 2 * D - (touch.surface - walls.size());
+	}
+	meet(std::uint64_t(touch.grain) << 32 | side, place, row.radius, surfaces.effective_mass_at(touch),
+		relative_motion(touch.normal, motion_of(row), before), relative_motion(touch.normal, motion_after(at), after),
+		touch.slip_before);
+}
+
+template <int D>
+void Books<D>::meet_surfaces(LedgerMotion& motion)
+{
+	const double half = state.scene.dt / 2;
+	for (const SurfaceTouch<D>& touch : state.touches)
+		if (touch.overlap > 0) meet_surface(touch);
+	for (std::size_t w = 0; w < walls.size(); ++w) {
+		const Vec<D>& force = state.scene.walls[w].force;
+		motion.walls.before -= dot(force, walls[w].surface_velocity()) * half;
+		motion.walls.after -= dot(force, state.scene.walls[w].surface_velocity()) * half;
+	}
+}
+
+template <int D>
+void Books<D>::weigh(LedgerMotion& motion, double mass, const Vec<D>& place, const Vec<D>& v, const Vec<D>& v_after,
+	const std::array<bool, D>& along) const
+{
+	const double half = state.scene.dt / 2;
+	for (int k = 0; k < D; ++k) {
+		if (!along[k]) continue;
+		const double g = state.scene.gravity[k];
+		if (state.scene.cell.periodic[k])  // there is no height: what falls is added up
+			motion.falling.before -= mass * g * v[k] * half, motion.falling.after -= mass * g * v_after[k] * half;
+		else
+			motion.potential -= mass * g * place[k];
+	}
+}
+
+template <int D>
+void Books<D>::move_grains(LedgerMotion& motion) const
+{
+	const double half = state.scene.dt / 2;
+	std::array<bool, D> all_axes;
+	all_axes.fill(true);
+	for (std::uint32_t g = 0; g < state.n; ++g) {
+		const std::uint32_t at = state.row_of[g];
+		if (at >= state.n_free) continue;
+		const Row<D>&was = rows[at], &is = state.rows[at];
+		const double mass = 1 / state.inverse_mass(at);
+		motion.translation += 0.5 * mass * dot(was.v, is.v);
+		if (state.scene.rotation) motion.rotation += 0.5 * mass * inner(was.surface, is.surface) / state.scene.spin_response;
+		weigh(motion, mass, was.x, was.v, is.v, all_axes);
+	}
+	for (const Push<D>& push : state.pushes) {
+		const Row<D>&was = rows[state.row_of[push.grain]], &is = state.rows[state.row_of[push.grain]];
+		const Spin<D> surface_force = push.torque / is.radius;
+		motion.loads.before += (dot(push.force, was.v) + inner(surface_force, was.surface)) * half;
+		motion.loads.after += (dot(push.force, is.v) + inner(surface_force, is.surface)) * half;
+	}
+}
+
+template <int D>
+void Books<D>::move_bodies(LedgerMotion& motion) const
+{
+	const double half = state.scene.dt / 2;
+	motion.bodies.resize(bodies.size());
+	for (std::size_t b = 0; b < bodies.size(); ++b) {
+		if (state.body_fixed[b]) continue;
+		const RigidBody<D>&was = bodies[b], &is = state.scene.bodies[b];
+		const auto axis = [&](bool responds, double inertia, double force, double load, double v, double v_after,
+							  double& kinetic) {
+			if (responds) {
+				kinetic += 0.5 * inertia * v * v_after;
+				motion.loads.before += load * v * half, motion.loads.after += load * v_after * half;
+			} else {
+				motion.bodies[b].before -= force * v * half, motion.bodies[b].after -= force * v_after * half;
+			}
+		};
+		for (int k = 0; k < D; ++k)
+			axis(is.responds[k], is.mass, is.force[k], is.load[k] + is.push[k], was.velocity[k], is.velocity[k],
+				motion.translation);
+		for (int k = 0; k < spin_axes(D); ++k)
+			axis(is.turns[k], moment_about(is, k), axis_of_spin(is.torque, k), axis_of_spin(is.push_torque, k),
+				axis_of_spin(was.spin, k), axis_of_spin(is.spin, k), motion.rotation);
+		weigh(motion, is.mass, was.place, was.velocity, is.velocity, is.responds);
+	}
+}
+
+template <int D>
+void Books<D>::book()
+{
+	met.clear();
+	LedgerMotion motion;
+	meet_pairs();
+	meet_surfaces(motion);
+	move_grains(motion);
+	move_bodies(motion);
+	ledger.book(met, motion);
+}
+
+template void require_explicable(const Scene<2>&);
+template void require_explicable(const Scene<3>&);
+template class Books<2>;
+template class Books<3>;
+
+}  // namespace graindrive::loop

@@ -1,0 +1,190 @@
+/// Speeds, expectations and limits of the parties.
+#include "engines/loop/budgets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engines/loop/relative_motion_grid.hpp"
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double fewest_steps = 20, most_steps = 200;  // between two selections, aimed at where grains are fast
+constexpr double smallest_part = 0.001;                // budget [d]
+constexpr double largest_part = 0.25;                  // of the skin
+constexpr double horizon_in_paces = 1.25;              // how long a selection may last, should budgets not be used up
+
+/// s, of looking at a candidate, over p, of computing a pair (measured).
+template <int D>
+constexpr double selecting_cost = D == 2 ? 6 : 3;
+
+}  // namespace
+
+template <int D>
+double Budgets<D>::smallest() const
+{
+	return smallest_part * state.typical_diameter;
+}
+
+template <int D>
+double Budgets<D>::body_speed(std::size_t b) const
+{
+	const RigidBody<D>& body = state.scene.bodies[b];
+	return length(body.velocity - drift_of(state.n_blocks() + b)) + length(body.spin) * state.reach[b];
+}
+
+template <int D>
+double Budgets<D>::horizon() const
+{
+	return D == 3 ? std::ceil(horizon_in_paces * state.pace) * state.scene.dt : HUGE_VAL;
+}
+
+template <int D>
+double Budgets<D>::way(std::size_t p) const
+{
+	if (D == 2) return state.travelled[p];
+	return state.travelled[p] + length(drift_of(p)) * (state.steps - state.selected_at) * state.scene.dt;
+}
+
+template <int D>
+double Budgets<D>::way_to_come(std::size_t p) const
+{
+	if (D == 2) return state.allowed[p];
+	return state.allowed[p] + length(drift_of(p)) * horizon();
+}
+
+template <int D>
+void Budgets<D>::clear()
+{
+	speed.assign(state.n_blocks() + state.scene.bodies.size(), 0);
+	displaced.assign(speed.size(), 0);
+	if (D == 3) state.drifts.assign(speed.size(), {});
+}
+
+template <int D>
+void Budgets<D>::measure(int rank)
+{
+	const auto way_of = [&](std::uint32_t i) {
+		if (state.searches == 0) return 0.0;
+		double square = 0;
+		for (int k = 0; k < D; ++k) {
+			const double way = state.rows[i].x[k] - state.searched_at[D * i + k];
+			square += way * way;
+		}
+		return square;
+	};
+	const std::uint32_t blocks = state.n_blocks(), threads = state.scene.threads;
+	for (std::uint32_t b = std::uint64_t(blocks) * rank / threads; b < std::uint64_t(blocks) * (rank + 1) / threads; ++b) {
+		const std::uint32_t first = b * grains_per_block, end = std::min(first + grains_per_block, state.n_free);
+		if constexpr (D == 3) {
+			Vec<D> sum;
+			for (std::uint32_t i = first; i < end; ++i) sum += state.rows[i].v;
+			state.drifts[b] = sum / (end - first);
+		}
+		double fastest = 0, farthest = 0;
+		for (std::uint32_t i = first; i < end; ++i) {
+			fastest = std::max(fastest, geometry::squared_norm(state.rows[i].v - drift_of(b)));
+			farthest = std::max(farthest, way_of(i));
+		}
+		speed[b] = std::sqrt(fastest), displaced[b] = std::sqrt(farthest);
+	}
+	if (rank != 0) return;
+	for (std::uint32_t i = state.n_free; i < state.n; ++i) {
+		double& farthest = displaced[state.party_of(i)];
+		farthest = std::max(farthest, std::sqrt(way_of(i)));
+	}
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
+		if (state.body_fixed[b]) continue;
+		if (D == 3) state.drifts[blocks + b] = state.scene.bodies[b].velocity;
+		speed[blocks + b] = body_speed(b);
+	}
+}
+
+/// By its own speed or that of a faster neighbour, which may push it.
+template <int D>
+void Budgets<D>::allow_travel()
+{
+	std::vector<double> expected(speed);
+	for (const auto& pair : neighbours) {
+		expected[pair.first] = std::max(expected[pair.first], speed[pair.second]);
+		expected[pair.second] = std::max(expected[pair.second], speed[pair.first]);
+	}
+	const double least = smallest(), most = largest_part * state.skin;
+	state.travelled.resize(speed.size());
+	state.allowed.resize(speed.size());
+	for (std::size_t p = 0; p < state.allowed.size(); ++p)
+		state.allowed[p] = std::min(std::max(expected[p] * state.scene.dt * state.pace, least), most);
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
+		if (state.body_fixed[b]) state.allowed[state.n_blocks() + b] = 0;
+}
+
+/// Sets how many steps to aim at between selections. A pair that is selected and does not touch costs at every step, a selection once:
+///
+///   cost per step = p (N_0 + e n) + s N_candidates / n,  least for n = sqrt(s N_candidates / (p e)),
+///
+/// where e is how many more are selected for each step that budgets are made for: known from those that half the budgets would
+/// select. Only the speed depends on it, no bit of a result.
+template <int D>
+void Budgets<D>::choose_pace(const PairCounts& counts, std::size_t candidates)
+{
+	const double more_per_step = 2 * std::max(double(counts.selected) - double(counts.by_half_budgets), 1.0) / state.pace;
+	state.pace = std::clamp(std::sqrt(selecting_cost<D> * candidates / more_per_step), fewest_steps, most_steps);
+}
+
+/// In the plane each of two grains may have gone as far as the farthest one has.
+template <>
+double Budgets<2>::approach_before_selection() const
+{
+	double farthest = 0;
+	for (std::size_t p = 0; p < displaced.size(); ++p) farthest = std::max(farthest, displaced[p] + state.allowed[p]);
+	return 2 * farthest;
+}
+
+/// In space by what neighbours have gone differently.
+template <>
+double Budgets<3>::approach_before_selection() const
+{
+	return RelativeMotionGrid(state, horizon()).largest_approach();
+}
+
+template <int D>
+double Budgets<D>::fastest_approach() const
+{
+	if (D == 2 || neighbours.empty()) {
+		double fastest = 0;
+		for (std::size_t p = 0; p < speed.size(); ++p) fastest = std::max(fastest, length(drift_of(p)) + speed[p]);
+		return 2 * fastest;
+	}
+	double fastest = 0;
+	for (const auto& [a, b] : neighbours) fastest = std::max(fastest, speed[a] + speed[b] + length(drift_of(a) - drift_of(b)));
+	for (const double of_party : speed) fastest = std::max(fastest, 2 * of_party);
+	return fastest;
+}
+
+template <int D>
+void Budgets<D>::spend(double drift)
+{
+	// A step that ends at the horizon may still be made with the selected pairs.
+	if (D == 3) state.selection_due |= (state.steps + 1 - state.selected_at) * state.scene.dt >= horizon();
+	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
+		if (state.body_fixed[b]) continue;
+		double& way = state.travelled[state.n_blocks() + b];
+		way += body_speed(b) * drift;
+		state.selection_due |= way > state.allowed[state.n_blocks() + b];
+	}
+}
+
+template <int D>
+void Budgets<D>::begin_selection()
+{
+	std::fill(state.travelled.begin(), state.travelled.end(), 0);
+	state.selection_due = false;
+	state.selected_at = state.steps;
+	++state.selections;
+}
+
+template class Budgets<2>;
+template class Budgets<3>;
+
+}  // namespace graindrive::loop

@@ -1,0 +1,104 @@
+/// Lays the grid, enters grains, and lets cells see their neighbours axis by axis.
+#include "engines/loop/relative_motion_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace graindrive::loop {
+
+namespace {
+
+constexpr double cell_width = 3;     // at least [d]
+constexpr int most_along_axis = 64;  // cells
+
+}  // namespace
+
+void RelativeMotionGrid::Motion::include(const Motion& other)
+{
+	for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], other.low[k]), high[k] = std::max(high[k], other.high[k]);
+	allowed = std::max(allowed, other.allowed);
+}
+
+RelativeMotionGrid::RelativeMotionGrid(const State<3>& of, double until) : state(of), horizon(until)
+{
+	lay();
+	for (std::uint32_t row = 0; row < state.n; ++row) enter(row);
+	for (int axis = 0; axis < 3; ++axis) spread_along(axis);
+}
+
+/// Cells are so wide that free grains that may touch lie in adjacent ones; a larger member enters all that its box meets.
+void RelativeMotionGrid::lay()
+{
+	double most_allowed = 0, fastest = 0;
+	for (const double budget : state.allowed) most_allowed = std::max(most_allowed, budget);
+	for (const Vec<3>& drift : state.drifts) fastest = std::max(fastest, length(drift));
+	const double wanted =
+		std::max(cell_width * state.typical_diameter, 2 * state.largest_free_radius + 2 * most_allowed + 2 * fastest * horizon);
+	const Cell<3>& cell = state.scene.cell;
+	Vec<3> low = Vec<3>::all(HUGE_VAL), high = Vec<3>::all(-HUGE_VAL);
+	for (std::uint32_t i = 0; i < state.n; ++i)
+		for (int k = 0; k < 3; ++k)
+			low[k] = std::min(low[k], state.rows[i].x[k]), high[k] = std::max(high[k], state.rows[i].x[k]);
+	for (int k = 0; k < 3; ++k) {
+		if (cell.periodic[k]) low[k] = cell.low[k], high[k] = cell.high[k];
+		cells[k] = std::clamp(int((high[k] - low[k]) / wanted), 1, most_along_axis);
+		corner[k] = low[k];
+		width[k] = std::max((high[k] - low[k]) / cells[k], wanted * 1e-3);
+	}
+	motions.resize(std::size_t(cells[0]) * cells[1] * cells[2]);
+}
+
+void RelativeMotionGrid::enter(std::uint32_t row)
+{
+	const SphereRow& grain = state.rows[row];
+	const std::uint32_t party = state.party_of(row);
+	Motion motion;
+	motion.allowed = state.allowed[party];
+	for (int k = 0; k < 3; ++k) {
+		const double now = grain.x[k] - state.searched_at[3 * row + k], then = now + state.drifts[party][k] * horizon;
+		motion.low[k] = std::min(now, then), motion.high[k] = std::max(now, then);
+	}
+	const double beyond = std::max(0.0, grain.radius - state.largest_free_radius);
+	int first[3], last[3];
+	for (int k = 0; k < 3; ++k) {
+		first[k] = int(std::floor((grain.x[k] - beyond - corner[k]) / width[k]));
+		last[k] = int(std::floor((grain.x[k] + beyond - corner[k]) / width[k]));
+		if (!state.scene.cell.periodic[k])
+			first[k] = std::clamp(first[k], 0, cells[k] - 1), last[k] = std::clamp(last[k], 0, cells[k] - 1);
+		last[k] = std::min(last[k], first[k] + cells[k] - 1);
+	}
+	const auto within = [&](int k, int c) { return (c % cells[k] + cells[k]) % cells[k]; };
+	for (int x = first[0]; x <= last[0]; ++x)
+		for (int y = first[1]; y <= last[1]; ++y)
+			for (int z = first[2]; z <= last[2]; ++z) at(within(0, x), within(1, y), within(2, z)).include(motion);
+}
+
+/// Each cell takes in what its neighbours along an axis have; after the three axes all 26.
+void RelativeMotionGrid::spread_along(int axis)
+{
+	const std::vector<Motion> before = motions;
+	const std::size_t stride = axis == 0 ? std::size_t(cells[1]) * cells[2] : axis == 1 ? cells[2] : 1;
+	for (std::size_t c = 0; c < motions.size(); ++c) {
+		const int place = int(c / stride % cells[axis]);
+		for (const int step : { -1, 1 }) {
+			int to = place + step;
+			if (to < 0 || to >= cells[axis]) {
+				if (!state.scene.cell.periodic[axis]) continue;
+				to = (to + cells[axis]) % cells[axis];
+			}
+			motions[c].include(before[c + (std::ptrdiff_t(to) - place) * std::ptrdiff_t(stride)]);
+		}
+	}
+}
+
+double RelativeMotionGrid::largest_approach() const
+{
+	double largest = 0;
+	for (const Motion& motion : motions) {
+		if (!(motion.low[0] <= motion.high[0])) continue;  // nobody is here
+		largest = std::max(largest, length(motion.high - motion.low) + 2 * motion.allowed);
+	}
+	return largest;
+}
+
+}  // namespace graindrive::loop

@@ -1,0 +1,59 @@
+"""What contacts remember, the tangential springs: from YADE's interactions to GrainLoop.springs, and back."""
+
+from .loop_laws import OUR_LAWS, only
+
+# Law2_ -> the attribute of the contact's phys in which it remembers: a tangential spring [m], or YADE's own laws a force [N]
+REMEMBERED = {
+    **{name: "slip" for name in OUR_LAWS},
+    "Law2_ScGeom_FrictPhys_CundallStrack": "shearForce",
+    "Law2_ScGeom_MindlinPhys_Mindlin": "shearElastic",
+}
+
+
+def springs_of(contacts, dimensions):
+    """Return what the present contacts of an InteractionLoop remember, as GrainLoop.springs.
+
+    Of disks id, id, number along z x n; of spheres id, id and the vector of the first against the second.
+    """
+    from yade import O
+
+    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
+    springs = []
+    for contact in O.interactions:
+        if contact.isReal:
+            remembered = getattr(contact.phys, attribute)
+            x, y, _ = contact.geom.normal
+            along = remembered if dimensions == 3 else [x * remembered[1] - y * remembered[0]]
+            springs += [contact.id1, contact.id2, *along]
+    return springs
+
+
+def give_springs(contacts, springs, dimensions):
+    """Have the present contacts of an InteractionLoop remember what `springs` (as GrainLoop's) says, or nothing."""
+    from yade import O
+
+    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
+    width = 3 if dimensions == 2 else 5
+    remembered = {
+        (int(row[0]), int(row[1])): row[2:] for row in (springs[k : k + width] for k in range(0, len(springs), width))
+    }
+    for contact in O.interactions:
+        if contact.isReal:
+            setattr(contact.phys, attribute, spring_between(remembered, contact, dimensions))
+
+
+def spring_between(remembered, contact, dimensions):
+    """Return the spring of one of YADE's interactions as a vector, of `remembered`, (id, id) -> numbers; zero if it has none.
+
+    Exchanging the two sides turns a vector round; the number of disks, along z x n, stays.
+    """
+    from yade.minieigenHP import Vector3
+
+    forth, back = (contact.id1, contact.id2), (contact.id2, contact.id1)
+    found, sign = (remembered[forth], 1.0) if forth in remembered else (remembered.get(back), -1.0)
+    if found is None:
+        return Vector3.Zero
+    if dimensions == 3:
+        return Vector3(*found) * sign
+    x, y, _ = contact.geom.normal
+    return Vector3(-y, x, 0) * found[0]
