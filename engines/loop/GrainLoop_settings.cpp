@@ -123,7 +123,14 @@ loop::Side GrainLoop::side_named(const std::string& name) const
 void GrainLoop::set_load(int id, const Vector3r& force)
 {
 	const Turn turn = take_turn();
-	running().body_index(id);  // a free grain becomes a body
+	if (!force.allFinite())
+		throw std::invalid_argument(
+			"GrainLoop.setLoad: the force on body " + std::to_string(id) + " must be finite, got one that is not");
+	running();
+	if (id < 0 || !scene->bodies->exists(id))
+		throw std::invalid_argument(
+			"GrainLoop.setLoad: body " + std::to_string(id) + " is not in O.bodies; give the id that O.bodies.append returned");
+	mirror_->body_index(id);  // a free grain becomes a body
 	if (mirror_->map.body_of_id[id] < 0)
 		throw std::invalid_argument(
 			"GrainLoop.setLoad: body " + std::to_string(id) + " does not move; free one of its directions first");

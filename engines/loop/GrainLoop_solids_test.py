@@ -6,7 +6,7 @@ import disks
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, surfaces
+from graindrive import engines, grain_loop, surfaces
 from yade import O, Quaternion
 from yade.minieigenHP import Vector3
 from yade.wrapper import (
@@ -221,6 +221,28 @@ def test_contacts_with_a_solid_carry_the_weight():
     assert table["overlap"] == pytest.approx((weight / (2e5 * math.sqrt(0.5))) ** (2 / 3), rel=1e-9)
 
 
+def test_a_scene_with_solids_is_taken_over_and_given_back_with_its_springs():
+    """Springs between spheres and at the solid go along both ways."""
+    after = []
+    for exchanged in (False, True):
+        disks.new_scene(dt=2e-4)
+        solid(surfaces.cylinder((0, 0, 0), (0, 1, 0), 1.5), spin=(0, 2, 0))
+        heap(over=(0, 0, 2.1))
+        yades()
+        disks.run(1100)
+        if exchanged:
+            loop = grain_loop.use_grain_loop()
+            assert loop.dimensions == 3 and len(loop.wallSprings) >= 5
+        disks.run(100)
+        if exchanged:
+            grain_loop.use_yade_loop()
+        disks.run(100)
+        after.append(state())
+    assert np.abs(after[0] - after[1]).max() < 1e-6
+    springs = [i.phys.slip.norm() for i in O.interactions if i.isReal and i.id1 == 0]
+    assert max(springs) > 0
+
+
 def test_energy_closes_with_a_driven_solid():
     disks.new_scene(dt=2e-4)
     solid(surfaces.cylinder((0, 0, 0), (0, 1, 0), 3), spin=(0, 2, 0))
@@ -267,4 +289,49 @@ def test_a_sphere_that_begins_inside_a_solid_stops_the_run():
     spheres.sphere((1.5, 0, 0))
     ours()
     with pytest.raises(RuntimeError, match="overlaps the solid of body 0 by"):
+        disks.run(1)
+
+
+def test_what_is_put_into_a_solid_or_under_one_stops_the_run_at_once():
+    for into in (0, 1):
+        disks.new_scene(dt=2e-4)
+        ident = solid(surfaces.ball((0, 0, 0), 2))
+        sphere = spheres.sphere((5, 0, 0))
+        ours(gravity=(0, 0, 0))
+        disks.run(5)
+        if into == 0:
+            O.bodies[sphere].state.pos = Vector3(1, 0, 0)
+        else:
+            O.bodies[ident].state.pos = Vector3(4, 0, 0)
+        with pytest.raises(RuntimeError, match="overlaps the solid of body 0"):
+            disks.run(2)  # a step sees solids where the one before has left them
+
+
+def test_another_surface_is_refused_by_a_checkpoint(tmp_path):
+    loop = drum_scene()
+    disks.run(10)
+    loop.checkpoint(str(tmp_path / "file"))
+    O.bodies[0].shape.recipe = surfaces.ball((0, 0, 0), 0.1).recipe
+    with pytest.raises(RuntimeError, match="body 0 has another surface"):
+        loop.restore(str(tmp_path / "file"))
+    with pytest.raises(RuntimeError, match="checkpoint .*"):
+        loop.restore(str(tmp_path))
+
+
+def test_a_solid_floor_is_a_base_though_a_sphere_is_held_above_it():
+    disks.new_scene(dt=2e-4)
+    solid(FLOOR)
+    spheres.sphere((0, 0, 0.6)), spheres.frozen((3, 0, 20))
+    ours()
+    disks.run(300)
+
+
+def test_a_solid_without_mass_may_not_be_freed():
+    disks.new_scene(dt=2e-4)
+    ident = solid(surfaces.ball((0, 0, 0), 2))
+    spheres.sphere((5, 0, 0))
+    ours()
+    disks.run(5)
+    O.bodies[ident].state.blockedDOFs = ""
+    with pytest.raises((ValueError, RuntimeError), match="may move and has no mass"):
         disks.run(1)

@@ -2,6 +2,7 @@
 #include "engines/loop/books.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "engines/loop/guards.hpp"
 
@@ -79,7 +80,9 @@ void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, do
 template <int D>
 void Books<D>::meet_pairs()
 {
-	for (const auto& [i, j, slip] : selected) {
+	for (auto [i, j, slip] : selected) {
+		if constexpr (D == 3)  // a search may let the two change places; what the ledger remembers is a vector of one of them
+			if (state.index_of[i] > state.index_of[j]) std::swap(i, j), slip = -slip;
 		const Row<D>&a = rows[i], &b = rows[j];
 		const Placement<D> at = placement<D>(a, b, state.scene.cell);
 		if (!(at.overlap > 0)) continue;

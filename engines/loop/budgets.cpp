@@ -145,6 +145,8 @@ double Budgets<2>::approach_before_selection() const
 template <>
 double Budgets<3>::approach_before_selection() const
 {
+	for (const double way : displaced)
+		if (!std::isfinite(way)) return HUGE_VAL;  // someone has moved grains by hand
 	return RelativeMotionGrid(state, horizon()).largest_approach();
 }
 

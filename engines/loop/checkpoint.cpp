@@ -87,7 +87,12 @@ std::string read_checkpoint(const std::string& path, Contents expected)
 {
 	std::ifstream in(path, std::ios::binary);
 	if (!in) refuse(path, std::string("cannot be opened: ") + std::strerror(errno));
-	const std::string all((std::istreambuf_iterator<char>(in)), {});
+	std::string all;
+	try {
+		all.assign(std::istreambuf_iterator<char>(in), {});
+	} catch (const std::ios_base::failure&) {
+		refuse(path, "cannot be read; is it a folder?");
+	}
 	if (all.size() < header_length || all.compare(0, magic_length, magic(expected)) != 0)
 		refuse(path, std::string("is not a checkpoint of ") + words(expected));
 	std::uint64_t numbers[3];

@@ -61,6 +61,14 @@ void check_body(const RigidBody<D>& body, std::size_t b)
 }
 
 template <int D>
+void check_solid(const Scene<D>& scene, const Solid<D>& solid)
+{
+	require(solid.shape != nullptr, "a solid needs a surface, got none");
+	require(solid.body >= 0 && solid.body < int(scene.bodies.size()), "a solid belongs to one of ", scene.bodies.size(),
+		" bodies, got ", solid.body);
+}
+
+template <int D>
 void check_side(const Cell<D>& cell, int k)
 {
 	const char name = "xyz"[k];
@@ -239,6 +247,7 @@ void check_scene(const Scene<D>& scene)
 	check_dimension(scene);
 	for (std::size_t i = 0; i < scene.grains.size(); ++i) check_grain(scene, i);
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) check_body(scene.bodies[b], b);
+	for (const Solid<D>& solid : scene.solids) check_solid(scene, solid);
 	laws::require_in_range(scene.law);
 	const double critical = critical_time_step(scene);
 	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,

@@ -115,6 +115,7 @@ void MirrorOf<D>::follow_bodies()
 	for (std::size_t b = 0; b < map.body_id.size(); ++b) {
 		if (map.body_id[b] < 0) continue;
 		const yade::State& state = state_of(map.body_id[b]);
+		require_finite(state, map.body_id[b]);
 		RigidBody<D>& body = stepper->bodies()[b];
 		read_state(state, body);
 		body.place = in_loop<D>(state.pos);

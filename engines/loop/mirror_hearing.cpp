@@ -18,6 +18,15 @@ const void* surface_of_solid(const yade::Body& body)
 
 }  // namespace
 
+void require_finite(const yade::State& state, int id)
+{
+	if (state.pos.allFinite() && state.vel.allFinite() && state.angVel.allFinite() && state.ori.coeffs().allFinite() &&
+		!state.ori.coeffs().isZero(0))
+		return;
+	throw std::runtime_error("GrainLoop: position, velocity, spin or orientation of body " + std::to_string(id) +
+							 " is not finite or no orientation; look for what writes it into O.bodies");
+}
+
 template <int D>
 bool MirrorOf<D>::Written::operator==(const Written& other) const
 {
@@ -101,6 +110,7 @@ void MirrorOf<D>::hear_bodies()
 	for (const std::size_t g : moved) {
 		Grain<D> grain = stepper->grain(g);
 		const yade::State& state = state_of(map.grain_id[g]);
+		require_finite(state, map.grain_id[g]);
 		const Vec<D> place = in_loop<D>(state.pos);
 		if (!std::equal(place.coordinate, place.coordinate + D, written[g].place)) grain.place = place;
 		grain.velocity = in_loop<D>(state.vel), grain.spin = spin_in_loop<D>(state.angVel);

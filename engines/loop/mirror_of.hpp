@@ -6,6 +6,9 @@
 
 namespace graindrive::loop {
 
+/// @throws std::runtime_error naming the body whose motion, as somebody wrote it, is none
+void require_finite(const yade::State& state, int id);
+
 template <int D>
 class MirrorOf : public Mirror {
 public:

@@ -71,6 +71,13 @@ typename RunningGuards<D>::Limit RunningGuards<D>::behind_held_grains(Side side)
 		if (state.scene.bodies[state.members[row - state.n_free].body].responds[axis]) continue;
 		last = std::max(last, outward_of(side) * state.rows[row].x[axis] + state.rows[row].radius);
 	}
+	for (const Solid<D>& solid : state.scene.solids) {
+		const RigidBody<D>& body = state.scene.bodies[solid.body];
+		if (body.responds[axis]) continue;
+		const geometry::Bounds<D> box = body.bounds(solid.shape->bounds());
+		last = std::max(last, outward_of(side) < 0 ? -box.low[axis] : box.high[axis]);
+	}
+	if (last == HUGE_VAL) return {};  // a solid without end
 	return { outward_of(side) * (last + free_fall * 2 * state.largest_free_radius), last > -HUGE_VAL,
 		"three diameters behind the last grain that is held against gravity",
 		"a base without gaps, or bounds if grains may fall there" };

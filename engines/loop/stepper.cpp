@@ -154,8 +154,10 @@ void Stepper<D>::look_before()
 		double to_come = 0;
 		for (std::size_t p = 0; p < state.allowed.size() && surfaces.any(); ++p)
 			to_come = std::max(to_come, budgets.way_to_come(p));
+		moved_by_hand |= surfaces.moved_by_hand();
 		surfaces.list(to_come);
-		if (state.guards.every > 0 && state.steps % state.guards.every == 0) guards.check(pairs, surfaces);
+		if (state.guards.every > 0 && (moved_by_hand || state.steps % state.guards.every == 0)) guards.check(pairs, surfaces);
+		moved_by_hand = false;
 		surfaces.compute_forces();
 		hand_outside_forces_over();
 		if (books) books->remember(pairs);
@@ -169,6 +171,7 @@ template <int D>
 void Stepper<D>::finish()
 {
 	if (!body_forces_known) gather_body_forces();
+	moved_by_hand |= surfaces.moved_by_hand();  // since forces were computed
 	rigid.move();
 	bool sweep_has_done_it = false;
 	if constexpr (D == 2) sweep_has_done_it = pairs.sweep_knows_outside();
@@ -176,6 +179,7 @@ void Stepper<D>::finish()
 		surfaces.kick_grains(
 			[&](std::uint32_t row, const Vec<D>& force, const Spin<D>& turning) { kick_grain(row, force, turning); });
 	if (surfaces.any()) surfaces.move();
+	surfaces.remember_places();
 	if (!sweep_has_done_it)
 		for (const Push<D>& push : state.pushes) {
 			const std::uint32_t row = state.row_of[push.grain];

@@ -126,6 +126,7 @@ private:
 	std::vector<char> thread_beyond;  // by thread: a block went beyond its limit
 	std::exception_ptr failure;
 	bool searching = false;
+	bool moved_by_hand = false;  // grains or solids have been put elsewhere: guards look at all at once
 	bool body_forces_known = false;
 	bool laid_out_since_forces = false;
 	double drifted = 0;  // for how long grains have moved since their forces were computed [s]

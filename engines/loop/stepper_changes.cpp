@@ -27,7 +27,7 @@ void Stepper<D>::put(std::size_t index, const Grain<D>& grain)
 	if (!elsewhere) return;
 	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // whoever was near is no guide any more
 	surfaces.forget_list();
-	state.selection_due = true;
+	state.selection_due = moved_by_hand = true;
 }
 
 template <int D>

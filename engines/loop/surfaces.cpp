@@ -14,6 +14,27 @@ using geometry::cross;
 
 }  // namespace
 
+template <int D>
+void Surfaces<D>::remember_places()
+{
+	left_at.clear();
+	for (const Solid<D>& solid : state.scene.solids) left_at.push_back(state.scene.bodies[solid.body]);
+}
+
+template <int D>
+bool Surfaces<D>::moved_by_hand()
+{
+	bool moved = false;
+	for (std::size_t s = 0; s < left_at.size() && s < state.scene.solids.size(); ++s) {
+		const RigidBody<D>& body = state.scene.bodies[state.scene.solids[s].body];
+		const Vec<D> axis = Vec<D>::along(0), other = Vec<D>::along(1);
+		moved |= body.place != left_at[s].place || body.turn.apply(axis) != left_at[s].turn.apply(axis) ||
+		         body.turn.apply(other) != left_at[s].turn.apply(other);
+	}
+	if (moved) forget_list();
+	return moved;
+}
+
 /// The order is that of grains, wherever they lie in memory.
 template <int D>
 void Surfaces<D>::list(double to_come)

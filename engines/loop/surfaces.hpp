@@ -16,6 +16,10 @@ public:
 	bool any() const { return !state.scene.walls.empty() || !state.scene.solids.empty(); }
 	/// The list of near grains is made anew at the next step.
 	void forget_list() { largest_way = HUGE_VAL; }
+	/// True if a solid is elsewhere than the last step left it; the list is then made anew.
+	bool moved_by_hand();
+	/// Where solids are after a step.
+	void remember_places();
 	/// Tells that pairs are about to be selected anew: no grain has gone farther since the last time [m].
 	void note_selection(double farthest) { largest_way += farthest; }
 	/// Lists grains near surfaces anew once something may have come from beyond the list to a surface; until pairs are selected anew no
@@ -45,9 +49,10 @@ public:
 private:
 	State<D>& state;
 	const StepMotion<D>& motion;
-	double largest_way = HUGE_VAL;       // of any grain since the list was made, up to the last selection [m]
-	std::vector<double> surface_way;     // of each surface since then [m]
-	std::vector<double> farthest_grain;  // of each solid: from its place, with a diameter to go [m]
+	double largest_way = HUGE_VAL;                  // of any grain since the list was made, up to the last selection [m]
+	std::vector<double> surface_way;                // of each surface since then [m]
+	std::vector<geometry::RigidMotion<D>> left_at;  // solids, by the last step
+	std::vector<double> farthest_grain;             // of each solid: from its place, with a diameter to go [m]
 
 	std::size_t count() const { return state.scene.walls.size() + state.scene.solids.size(); }
 	bool may_touch(std::uint32_t surface, std::uint32_t grain) const;

@@ -73,13 +73,25 @@ void check_wall(const Scene<D>& scene, const Wall<D>& wall)
 		wall_extent(scene, wall));
 }
 
+/// A box so long along every axis on which the given one ends as its diagonal: what turns stays within.
+template <int D>
+geometry::Bounds<D> turned_any_way(geometry::Bounds<D> box)
+{
+	double square = 0;
+	for (int k = 0; k < D; ++k)
+		if (std::isfinite(box.high[k] - box.low[k])) square += (box.high[k] - box.low[k]) * (box.high[k] - box.low[k]);
+	for (int k = 0; k < D; ++k) {
+		if (!std::isfinite(box.high[k] - box.low[k])) continue;
+		const double middle = (box.low[k] + box.high[k]) / 2;
+		box.low[k] = middle - std::sqrt(square) / 2, box.high[k] = middle + std::sqrt(square) / 2;
+	}
+	return box;
+}
+
 /// A grain meets the image of a solid that is nearest to its middle, so no other image may reach it.
 template <int D>
 void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 {
-	if (!solid.shape) throw std::invalid_argument("a solid needs a surface, got none");
-	if (solid.body < 0 || solid.body >= int(scene.bodies.size()))
-		throw std::invalid_argument(sentence("a solid belongs to one of ", scene.bodies.size(), " bodies, got ", solid.body));
 	double largest = 0;
 	for (const Grain<D>& g : scene.grains)
 		if (g.body != solid.body) largest = std::max(largest, g.radius);
@@ -88,7 +100,8 @@ void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 			sentence("the solid of body ", solid.body, " knows its distance for grains up to a radius of ",
 				solid.shape->largest_sphere(), " m, got one of ", largest, "; sample it on a grid that reaches farther out"));
 	const RigidBody<D>& body = scene.bodies[solid.body];
-	const geometry::Bounds<D> box = body.bounds(solid.shape->bounds());
+	geometry::Bounds<D> box = body.bounds(solid.shape->bounds());
+	if (length(body.spin) > 0 || body.turns_somewhere()) box = turned_any_way(box);
 	for (int k = 0; k < D; ++k) {
 		if (!scene.cell.periodic[k]) continue;
 		const double wide = box.high[k] - box.low[k];

@@ -246,6 +246,9 @@ struct Reader {
 			throw std::invalid_argument(name + " is a member of a clump, which GrainLoop does not move; unite surfaces instead "
 											   "(graindrive.surfaces: a | b), or use YADE's own loop");
 		if (!shape.surface()) throw std::invalid_argument(name + " has no surface; give it one: Solid(surfaces.ball(...))");
+		constexpr unsigned translations = State::DOF_X | State::DOF_Y | (D == 3 ? State::DOF_Z : 0);
+		if (!(body.state->mass > 0) && (body.state->blockedDOFs & translations) != translations)
+			throw std::invalid_argument(name + " may move and has no mass; give it one (state.mass), or block its x, y and z");
 		const int owner = map.body_of_id[id] = new_body(id, rigid<D>(*body.state));
 		std::string recipe = shape.recipe;
 		if (D == 2) {

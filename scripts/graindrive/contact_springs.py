@@ -1,4 +1,4 @@
-"""What contacts remember, the tangential springs: from YADE's interactions to GrainLoop.springs, and back."""
+"""What contacts remember, the tangential springs: from YADE's interactions to GrainLoop's springs and wallSprings, and back."""
 
 from .loop_laws import OUR_LAWS, only
 
@@ -11,35 +11,53 @@ REMEMBERED = {
 
 
 def springs_of(contacts, dimensions):
-    """Return what the present contacts of an InteractionLoop remember, as GrainLoop.springs.
+    """Return what the present contacts of an InteractionLoop remember, as GrainLoop's attributes springs and wallSprings.
 
-    Of disks id, id, number along z x n; of spheres id, id and the vector of the first against the second.
+    Of disks id, id, number along z x n; of spheres id, id and the vector of the first against the second. In wallSprings a
+    solid stands first, and the vector is that of the grain against it.
     """
     from yade import O
 
     attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
-    springs = []
+    springs, at_solids = [], []
     for contact in O.interactions:
         if contact.isReal:
             remembered = getattr(contact.phys, attribute)
             x, y, _ = contact.geom.normal
             along = remembered if dimensions == 3 else [x * remembered[1] - y * remembered[0]]
-            springs += [contact.id1, contact.id2, *along]
-    return springs
+            if is_solid(contact.id1):  # YADE's first body; along z x n the number is the same seen from either side
+                at_solids += [contact.id1, contact.id2, *(along if dimensions == 2 else -along)]
+            else:
+                springs += [contact.id1, contact.id2, *along]
+    return {"springs": springs, "wallSprings": at_solids}
 
 
-def give_springs(contacts, springs, dimensions):
-    """Have the present contacts of an InteractionLoop remember what `springs` (as GrainLoop's) says, or nothing."""
+def is_solid(ident):
+    """Tell whether a body of O.bodies is a Solid."""
+    from yade import O
+
+    return type(O.bodies[ident].shape).__name__ == "Solid"
+
+
+def give_springs(contacts, loop):
+    """Have the present contacts of an InteractionLoop remember what GrainLoop's springs and wallSprings say, or nothing."""
     from yade import O
 
     attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
-    width = 3 if dimensions == 2 else 5
-    remembered = {
-        (int(row[0]), int(row[1])): row[2:] for row in (springs[k : k + width] for k in range(0, len(springs), width))
-    }
+    dimensions = loop.dimensions
+    remembered = by_ids(loop.springs, dimensions)
+    for (solid, grain), spring in by_ids(loop.wallSprings, dimensions).items():
+        remembered[grain, solid] = spring  # of the grain against the solid
     for contact in O.interactions:
         if contact.isReal:
             setattr(contact.phys, attribute, spring_between(remembered, contact, dimensions))
+
+
+def by_ids(numbers, dimensions):
+    """Return (id, id) -> spring of a list of GrainLoop's."""
+    width = 3 if dimensions == 2 else 5
+    rows = (numbers[k : k + width] for k in range(0, len(numbers), width))
+    return {(int(row[0]), int(row[1])): row[2:] for row in rows}
 
 
 def spring_between(remembered, contact, dimensions):

@@ -56,7 +56,7 @@ def use_grain_loop(periods=None, dimensions=None, **settings):
     of_scene = {
         **loop_laws.law_settings(loop.contacts),
         **loop_laws.damping_settings(loop.newton),
-        "springs": contact_springs.springs_of(loop.contacts, dimensions),
+        **contact_springs.springs_of(loop.contacts, dimensions),
     }
     periods = dims.periods_of_scene(periods, dimensions)
     given = dict(dimensions=dimensions, gravity=loop.newton.gravity, periods=periods)
@@ -122,7 +122,7 @@ def use_yade_loop():
     hand_settings_back(loop, before)
     del exchanged[tag]
     O.engines = before.put_back(O.engines)
-    make_contacts_anew(before, loop.springs, loop.dimensions)
+    make_contacts_anew(before, loop)
 
 
 def hand_settings_back(loop, before):
@@ -150,8 +150,8 @@ def hand_settings_back(loop, before):
             setattr(law2, key, getattr(loop, key))
 
 
-def make_contacts_anew(loop, springs, dimensions):
-    """Have YADE find all contacts of the present positions, in a step that takes no time, and give them these springs."""
+def make_contacts_anew(loop, of):
+    """Have YADE find all contacts of the present positions, in a step that takes no time, with the springs of a GrainLoop."""
     from yade import O
 
     engines_of_scene, dt, clock = O.engines, O.dt, (O.iter, O.time)
@@ -161,7 +161,7 @@ def make_contacts_anew(loop, springs, dimensions):
     O.run(1, True)  # in the loop's own thread: forces of engines that are called by hand are not cleared
     O.engines, O.dt = engines_of_scene, dt
     engines.set_clock(O._sceneObj, *clock)
-    contact_springs.give_springs(loop.contacts, springs, dimensions)
+    contact_springs.give_springs(loop.contacts, of)
 
 
 def find(name):

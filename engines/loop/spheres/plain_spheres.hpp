@@ -212,12 +212,14 @@ private:
 		const Vec<3> surface = body.b.velocity + geometry::cross(body.b.spin, arm);
 		const Effect on = meet(solid_springs, { k, i },
 			{ n, g.radius - found.distance, g.radius, laws::effective_mass(1 / g.mass + inverse), g.velocity - surface,
-				g.radius * g.spin });
+				g.radius * g.spin },
+			0.5);
 		force[i] += on.force, turn[i] += on.twist;
 		body.push(arm, -on.force);
 	}
 
-	Effect meet(Springs& all, std::pair<std::size_t, std::size_t> key, const Meeting& m)
+	/// `between` is how far apart along the normal the two forces act, in overlaps: at own radii, on a solid at the middle.
+	Effect meet(Springs& all, std::pair<std::size_t, std::size_t> key, const Meeting& m, double between = 1)
 	{
 		if (m.overlap <= 0) {
 			all.erase(key);
@@ -234,7 +236,7 @@ private:
 				if (!s.friction) answer.tangential = answer.slip = Vector3r::Zero();
 				all[key] = { answer.slip, n };
 				const Vec<3> twist = from_law(n.cross(answer.tangential));
-				overlap_torque += m.overlap * twist;
+				overlap_torque += between * m.overlap * twist;
 				return Effect{ from_law(answer.tangential - answer.normal * n), twist };
 			},
 			s.law);

@@ -3,11 +3,15 @@
 usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
 
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
-  --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150; without it all of them, in that order
-  --quick       bed10k only, short runs: about a minute once its bed is in the cache
+  --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres);
+                without it all of them, in that order
+  --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
   --kernel NAME instructions that GrainLoop runs on: avx512, avx2 or portable; by default the best of this processor
   --lammps COMMAND  another LAMMPS than Debian's `lmp`, such as one built for this processor
+
+Spheres are those of the lift study: 20,000 and 190,000 settled, and the 20,000 flowing down 24 degrees. Their energies are
+compared after 300 steps, with friction and without it, before a ratio is printed.
 
 One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
 whose kinetic energies differ after 300 steps (LIGGGHTS: the first portion) gets no ratio.
@@ -26,15 +30,39 @@ import tempfile
 import numpy as np
 
 from .. import engines
-from . import lammps, liggghts
-from .scenes import FREE, SCENES, scene, with_restitution
+from . import lammps, layout, liggghts
+from .scenes import SCENES, scene, with_restitution
 
 # Largest relative difference of kinetic energy then, by law. Hertz: the same arithmetic from the same
 # state, and LAMMPS's first slip of moving starts (1e-6). Drum: LAMMPS damps by m_eff gamma and lets springs slip otherwise:
-# alike, not equal. Restitution: without
+# alike, not equal. Restitution in the plane: without
 # friction 1e-14; with it LIGGGHTS takes half an overlap off the friction's lever and cuts springs alone at the bound, 4e-5.
 SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05, "hertzRestitution": 1e-3}
+# Spheres: LAMMPS's `granular` takes half an overlap off the torque's lever, LIGGGHTS off both levers, and deep beds overlap by
+# several hundredths of a radius. What is left of a settled bed's energy then differs by 5e-3 (LAMMPS) and 2.5e-2 (LIGGGHTS);
+# without friction by 1e-13. Hence two comparisons: with friction, and of the same scene without it. In the first step of a scene
+# that moves LIGGGHTS damps otherwise: 3e-4 in small flows, and no more after it.
+SAME_SPHERES, SAME_SMOOTH_SPHERES, SAME_SMOOTH_FLOW_IN_LIGGGHTS = 0.05, 1e-9, 1e-3
+SAME_ON_YADES_LOOP = 1e-5  # the same law, by the same formulas
+WARM_UP = 10  # steps
+OWN_SHARE = (
+    6  # GrainLoop's portions of spheres have so many times a peer's steps: beside it they are short, and show the cost
+)
+# with which O.run begins and ends, 0.3 s for 190,000 bodies
 YADE_SHARE = 100  # YADE's loop gets a hundredth of the steps
+COMPARED = 300  # steps after which energies are compared: chaos parts round-off of dense flows soon after
+
+# What each scene is timed against.
+PLAN = {
+    "bed10k": ("lammps", "liggghts", "single", "yade"),
+    "magnus_dilute": ("lammps", "binned"),
+    "magnus_dense": ("lammps",),
+    "wiggle63k": ("lammps", "bed10k"),
+    "drum150": ("lammps",),
+    "lift20k": ("liggghts", "lammps", "threads", "single", "yade"),
+    "lift190k": ("liggghts", "threads", "lift20k"),
+    "lift_flow": ("liggghts",),
+}
 
 
 class Ours:
@@ -52,6 +80,10 @@ class Ours:
             if line.startswith("{"):
                 return json.loads(line)
         raise RuntimeError("the worker that runs GrainLoop or YADE's loop died; its words are above")
+
+    def warm_up(self):
+        """Take the first steps, in which a loop reads its bodies."""
+        self.run(WARM_UP)
 
     def close(self):
         self.process.kill()  # nothing is lost: it only answers
@@ -89,23 +121,49 @@ def row(name, a_scene, threads, kernel, peer, ours, theirs, precision="double"):
     )
 
 
-def against(peer_name, run_peer, name, a_scene, path, threads, rounds, steps, compared=300):
-    """Return the row against a peer, run by `run_peer(steps)`; None, with the reason on standard error, if it differs.
+def tolerance(a_scene):
+    """Return the largest relative difference of kinetic energies, with friction, at which peers compute the same scene."""
+    return SAME_SPHERES if layout.in_space(a_scene) else SAME[str(a_scene["law"])]
 
-    Energies are compared after `compared` steps: chaos parts round-off of dense flows soon after 300, and LIGGGHTS's first
-    steps, in which the bed takes up another law, differ by more than those after them.
+
+def tolerance_when_smooth(peer_name, a_scene):
+    """Return the same for spheres without friction."""
+    starts_in_motion = layout.kinetic_energy(a_scene) > 0
+    return SAME_SMOOTH_FLOW_IN_LIGGGHTS if peer_name == "LIGGGHTS" and starts_in_motion else SAME_SMOOTH_SPHERES
+
+
+def differs_when_smooth(peer_name, run, a_scene, folder, threads, compared):
+    """Return why a peer does not compute a scene without friction as we do, or None."""
+    smooth = dict(a_scene, friction=0.0)
+    worker = Ours(save(smooth, folder, "smooth.npz"), "grain", threads=threads)
+    try:
+        own, peer = worker.run(compared - 1), run(smooth, compared)
+    finally:
+        worker.close()
+    reason = differs(own["energy"], peer["energy"], tolerance_when_smooth(peer_name, a_scene))
+    return reason and f"without friction {reason}"
+
+
+def against(peer_name, run, name, a_scene, path, threads, rounds, steps, compared=COMPARED):
+    """Return the row against a peer; None, with the reason on standard error, if it differs.
+
+    `run(scene, steps)` runs the peer from the start of the scene, or of the same scene without friction. Energies are compared
+    after `compared` steps.
     """
     ours, theirs, particles = [], [], len(a_scene["x"])
+    own_steps = steps * (OWN_SHARE if layout.in_space(a_scene) else 1)
     worker = Ours(path, "grain", threads=threads)
     try:
-        peer, own = run_peer(compared), worker.run(compared - 1)  # beginning on the step was the first
-        reason = differs(own["energy"], peer["energy"], SAME[str(a_scene["law"])])
+        peer, own = run(a_scene, compared), worker.run(compared - 1)  # beginning on the step was the first
+        reason = differs(own["energy"], peer["energy"], tolerance(a_scene))
+        if reason is None and layout.in_space(a_scene):
+            reason = differs_when_smooth(peer_name, run, a_scene, os.path.dirname(path), threads, compared)
         if reason:
             print(f"{name}: no ratio against {peer_name}: {reason}", file=sys.stderr)
             return None
         for _ in range(rounds):
-            theirs.append(rate(run_peer(steps), particles, steps, threads))
-            ours.append(rate(worker.run(steps), particles, steps, threads))
+            theirs.append(rate(run(a_scene, steps), particles, steps, threads))
+            ours.append(rate(worker.run(own_steps), particles, own_steps, threads))
     finally:
         worker.close()
     against_whom = peer_name if threads == 1 else f"{peer_name}, {threads} ranks"
@@ -119,19 +177,26 @@ def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
         return
     lammps.write(a_scene, folder)
     for n in range(1, threads + 1):
-        run_peer = functools.partial(lammps.run, a_scene, folder, ranks=n)
-        yield against("LAMMPS", run_peer, name, a_scene, path, n, rounds, steps)
+        yield against(
+            "LAMMPS", functools.partial(lammps.run, folder=folder, ranks=n), name, a_scene, path, n, rounds, steps
+        )
 
 
 def against_liggghts(name, a_scene, folder, rounds, steps):
-    """Yield the row of the same bed under the law that LIGGGHTS has."""
+    """Yield the row of the same bed under the law that LIGGGHTS has.
+
+    Energies of disks are compared after the first portion: LIGGGHTS's first steps, in which the bed takes up another law, differ
+    by more than those after them.
+    """
     if not liggghts.available():
         print("LIGGGHTS is not installed (Debian's package liggghts); no ratio against it", file=sys.stderr)
         return
-    twin = with_restitution(a_scene)
+    twin = a_scene if str(a_scene["law"]) == "hertzRestitution" else with_restitution(a_scene)
     path = save(twin, folder, "restitution.npz")
     liggghts.write(twin, folder)
-    yield against("LIGGGHTS", functools.partial(liggghts.run, twin, folder), name, twin, path, 1, rounds, steps, steps)
+    compared = min(COMPARED, steps) if layout.in_space(twin) else steps
+    run = functools.partial(liggghts.run, folder=folder)
+    yield against("LIGGGHTS", run, name, twin, path, 1, rounds, steps, compared)
 
 
 def against_yade(name, a_scene, path, rounds, steps):
@@ -142,7 +207,7 @@ def against_yade(name, a_scene, path, rounds, steps):
     try:
         for k in range(rounds):
             slow, fast = peer.run(few), own.run(steps)
-            reason = differs(twin.run(few)["half_step"], slow["half_step"], SAME["hertzHistory"]) if k == 0 else None
+            reason = differs(twin.run(few)["half_step"], slow["half_step"], SAME_ON_YADES_LOOP) if k == 0 else None
             if reason:
                 print(f"{name}: no ratio against YADE's loop: {reason}", file=sys.stderr)
                 return None
@@ -154,30 +219,33 @@ def against_yade(name, a_scene, path, rounds, steps):
     return row(name, a_scene, 1, fast["processor"], "YADE's loop", ours, theirs)
 
 
-def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="double", **settings):
-    """Return the row of GrainLoop with other `settings` against GrainLoop as it is."""
-    other, plain = Ours(path, "grain", precision=precision, **settings), Ours(path, "grain")
+def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="double", threads=1, **settings):
+    """Return the row of GrainLoop with other `settings` against GrainLoop as it is; both by wall time on several threads."""
+    other, plain = Ours(path, "grain", precision=precision, threads=threads, **settings), Ours(path, "grain")
     particles = len(a_scene["x"])
     try:
+        other.warm_up(), plain.warm_up()
         answers = [(other.run(steps), plain.run(steps)) for _ in range(rounds)]
     finally:
         other.close(), plain.close()
-    ours, theirs = ([rate(answer, particles, steps, 1) for answer in side] for side in zip(*answers))
-    return row(name, a_scene, 1, answers[0][0]["processor"], peer, ours, theirs, precision=precision)
+    ours, theirs = ([rate(answer, particles, steps, threads) for answer in side] for side in zip(*answers))
+    return row(name, a_scene, threads, answers[0][0]["processor"], peer, ours, theirs, precision=precision)
 
 
-def against_small_bed(name, a_scene, path, rounds, steps, folder):
-    """Return the row of the large bed against our own rate on bed10k."""
-    small = scene("bed10k")
+def against_small_bed(name, a_scene, path, rounds, steps, folder, small_name):
+    """Return the row of a large bed against our own rate on a small one, which gets as many particle-steps."""
+    small = scene(small_name)
     small_path = save(small, folder, "small.npz")
+    times = round(len(a_scene["x"]) / len(small["x"]))
     large, little = Ours(path, "grain"), Ours(small_path, "grain")
     try:
-        answers = [(large.run(steps), little.run(6 * steps)) for _ in range(rounds)]
+        large.warm_up(), little.warm_up()
+        answers = [(large.run(steps), little.run(times * steps)) for _ in range(rounds)]
     finally:
         large.close(), little.close()
     ours = [rate(answer, len(a_scene["x"]), steps, 1) for answer, _ in answers]
-    theirs = [rate(answer, len(small["x"]), 6 * steps, 1) for _, answer in answers]
-    return row(name, a_scene, 1, answers[0][0]["processor"], "own bed10k", ours, theirs)
+    theirs = [rate(answer, len(small["x"]), times * steps, 1) for _, answer in answers]
+    return row(name, a_scene, 1, answers[0][0]["processor"], f"own {small_name}", ours, theirs)
 
 
 def save(a_scene, folder, file_name):
@@ -187,23 +255,41 @@ def save(a_scene, folder, file_name):
     return path
 
 
+def portions(a_scene, quick):
+    """Return how many portions are timed, and the steps of each: fewer of scenes that cost more.
+
+    LIGGGHTS takes half a microsecond for a step of a sphere: the 190,000 have 50 steps a portion where all must end in a minute.
+    """
+    rounds, steps = (3, 1000) if quick else (5, 3000)
+    size = len(a_scene["x"])
+    if layout.in_space(a_scene):
+        many = size > 100_000
+        return (2, 50) if many and quick else (rounds, steps // (10 if many else 3))
+    return rounds, steps // (3 if size > 21_000 else 1)
+
+
 def measure(name, quick, threads):
     """Yield the rows of one scene."""
-    a_scene = scene(name)
-    rounds, steps = (3, 1000) if quick else (5, 3000)
-    if np.sum(a_scene["kind"] == FREE) > 20_000:
-        steps //= 3
+    a_scene, plan = scene(name), PLAN[name]
+    rounds, steps = portions(a_scene, quick)
     with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
         path = save(a_scene, folder, "scene.npz")
-        yield from against_lammps(name, a_scene, path, folder, threads, rounds, steps)
-        if name == "bed10k":
+        own = functools.partial(against_ourselves, name, a_scene, path)
+        longer = steps * (OWN_SHARE if layout.in_space(a_scene) else 2)
+        if "lammps" in plan:
+            yield from against_lammps(name, a_scene, path, folder, threads, rounds, steps)
+        if "liggghts" in plan:
             yield from against_liggghts(name, a_scene, folder, rounds, steps)
-            yield against_ourselves(name, a_scene, path, rounds, 2 * steps, "own double", precision="single")
-            yield against_yade(name, a_scene, path, 3, 2 * steps)
-        if name == "magnus_dilute":  # forces by angle sampled at every step
-            yield against_ourselves(name, a_scene, path, 3 * rounds, steps, "own, not binned", binned=True)
-        if name == "wiggle63k":
-            yield against_small_bed(name, a_scene, path, rounds, steps, folder)
+        if "threads" in plan and threads > 1:
+            yield own(rounds, longer, "own 1 thread", threads=threads)
+        if "single" in plan:
+            yield own(rounds, longer, "own double", precision="single")
+        if "yade" in plan:
+            yield against_yade(name, a_scene, path, 3, longer)
+        if "binned" in plan:  # forces by angle sampled at every step
+            yield own(3 * rounds, steps, "own, not binned", binned=True)
+        for small_name in set(plan) & set(SCENES):
+            yield against_small_bed(name, a_scene, path, rounds, longer, folder, small_name)
 
 
 def print_row(entry):

@@ -2,17 +2,17 @@
 
 import shutil
 
-from . import peer_files
+from . import layout, peer_files
 
 INPUT = """
 atom_style granular
 atom_modify map array sort 1000 0
-dimension 2
+{dimension}
 units si
 newton off
 soft_particles yes
 communicate single vel yes
-boundary p f p
+boundary {boundary}
 read_data scene.data
 neighbor {skin} bin
 neigh_modify delay 0 every 1 check yes
@@ -24,6 +24,7 @@ fix poisson all property/global poissonsRatio peratomtype {poisson} {poisson} {p
 fix bounce all property/global coefficientRestitution peratomtypepair 3 {restitution}
 fix rub all property/global coefficientFriction peratomtypepair 3 {friction}
 pair_style gran model hertz tangential history
+pair_coeff * *
 fix move free nve/sphere
 fix rest wall freeze
 """
@@ -40,10 +41,12 @@ def write(a_scene, folder):
     peer_files.write_data(a_scene, folder, lambda i: f"{2 * r[i]:.17g} {density:.17g}")
 
 
-def run(a_scene, folder, steps):
+def run(a_scene, steps, folder):
     """Run some steps from the scene's start on one core; return {wall, cpu, energy}."""
     young, poisson, restitution = map(float, a_scene["constants"])
     text = INPUT.format(
+        dimension="" if layout.in_space(a_scene) else "dimension 2",
+        boundary=peer_files.boundary(a_scene),
         skin=peer_files.skin(a_scene),
         young=young,
         poisson=poisson,

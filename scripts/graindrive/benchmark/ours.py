@@ -1,38 +1,34 @@
 """A scene on GrainLoop or on YADE's loop, run in portions that the benchmark asks for on standard input."""
 
 import json
-import math
 import sys
 import time
 
 import numpy as np
 
 from .. import engines
-from .scenes import DRIVEN, FREE, WALL
+from . import layout
+from .layout import DRIVEN, FREE, WALL
 
 DRUM_MASS = 1e9  # wall and intruder of a drum are as good as infinitely heavy
 
 
 def bodies(a_scene):
-    """Put the scene's disks into YADE: walls frozen, or one turning clump where the scene is a drum."""
+    """Put the scene's grains into YADE: walls frozen, or one turning clump where the scene is a drum."""
     from yade import O, utils
     from yade.minieigenHP import Vector3
 
     O.reset()
-    if a_scene["period"] > 0:
-        O.periodic = True
-        height = 4 * (np.abs(a_scene["y"]).max() + 10 * a_scene["r"].max())
-        O.cell.setBox(float(a_scene["period"]), float(height), float(height))
-    turning = []
-    for x, y, r, vx, vy, spin, kind in zip(
-        *(a_scene[key].tolist() for key in ("x", "y", "r", "vx", "vy", "spin", "kind"))
-    ):
-        body = utils.sphere((x, y, 0), r, color=(1, 1, 1))
-        mass = float(a_scene["density"]) * math.pi * r**2
-        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * (mass * r**2 / 2)
-        body.state.blockedDOFs = "zXY" if kind == FREE else "xyzXYZ"
-        body.state.vel, body.state.angVel = Vector3(vx, vy, 0), Vector3(0, 0, spin)
-        if kind == WALL and a_scene["drive"][2] and a_scene["period"] == 0:
+    make_periodic(a_scene)
+    turning, moving_freely = [], "" if layout.in_space(a_scene) else "zXY"
+    tables = layout.places(a_scene), layout.velocities(a_scene), layout.spins(a_scene), *layout.masses(a_scene)
+    columns = [table.tolist() for table in (*tables, a_scene["r"], a_scene["kind"])]
+    for place, velocity, spin, mass, inertia, r, kind in zip(*columns):
+        body = utils.sphere(place, r, color=(1, 1, 1))
+        body.state.mass, body.state.inertia = mass, Vector3(1, 1, 1) * inertia
+        body.state.blockedDOFs = moving_freely if kind == FREE else "xyzXYZ"
+        body.state.vel, body.state.angVel = Vector3(*velocity), Vector3(*spin)
+        if kind == WALL and is_drum(a_scene):
             turning.append(body)
         else:
             O.bodies.append(body)
@@ -42,6 +38,21 @@ def bodies(a_scene):
         state.mass, state.inertia = DRUM_MASS, Vector3(1, 1, 1) * DRUM_MASS
         state.blockedDOFs, state.angVel = "xyzXYZ", Vector3(0, 0, float(a_scene["drive"][2]))
     O.dt = float(a_scene["dt"])
+
+
+def make_periodic(a_scene):
+    """Make YADE's cell periodic where the scene is; along other axes it is too long for anything to meet its image."""
+    from yade import O
+
+    if any(layout.periods(a_scene)):
+        O.periodic = True
+        far = 4 * (np.abs(layout.places(a_scene)[:, 1:]).max() + 10 * a_scene["r"].max())
+        O.cell.setBox(*(period or float(far) for period in layout.periods(a_scene)))
+
+
+def is_drum(a_scene):
+    """Return True where the wall turns as one body."""
+    return not any(layout.periods(a_scene)) and bool(a_scene["drive"][2])
 
 
 def law_settings(a_scene):
@@ -54,10 +65,11 @@ def grain_loop(a_scene, **settings):
     from yade import O
 
     loop = engines.GrainLoop(
+        dimensions=3 if layout.in_space(a_scene) else 2,
         law=str(a_scene["law"]),
         friction=float(a_scene["friction"]),
-        gravity=(0, -float(a_scene["gravity"]), 0),
-        periods=(float(a_scene["period"]), 0, 0),
+        gravity=layout.gravity(a_scene),
+        periods=layout.periods(a_scene),
         **law_settings(a_scene),
         **settings,
     )
@@ -77,39 +89,55 @@ def yade_loop(a_scene):
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider([wrapper.Bo1_Sphere_Aabb()], verletDist=skin),
         wrapper.InteractionLoop([wrapper.Ig2_Sphere_Sphere_ScGeom()], [phys], [law]),
-        wrapper.NewtonIntegrator(damping=0, gravity=(0, -float(a_scene["gravity"]), 0)),
+        wrapper.NewtonIntegrator(damping=0, gravity=layout.gravity(a_scene)),
     ]
 
 
-def move_on(a_scene, until, dt=None):
-    """Run a scene on GrainLoop until `until(loop, steps)`; return it as it then is."""
+def move_on(a_scene, until, dt=None, **settings):
+    """Run a scene on GrainLoop, with other `settings` of it, until `until(loop, steps)`; return it as it then is."""
     from yade import O
 
     bodies(a_scene)
-    loop = grain_loop(a_scene)
+    loop = grain_loop(a_scene, **settings)
     O.dt = dt or O.dt
     steps = 0
     while not until(loop, steps):
         O.run(1000, True)
         steps += 1000
-    positions, velocities, order = loop.positions, loop.velocities, np.argsort(a_scene["kind"] == WALL, kind="stable")
-    rows = order if a_scene["period"] == 0 else np.arange(len(a_scene["x"]))  # a drum's clump comes last
-    moved = {key: np.empty(len(a_scene["x"])) for key in ("x", "y", "vx", "vy", "spin")}
-    moved["x"][rows], moved["y"][rows] = positions.T
-    moved["vx"][rows], moved["vy"][rows], moved["spin"][rows] = *velocities.T, loop.spins
-    if a_scene["drive"][0]:
+    moved = layout.with_motion(a_scene, *(in_order(a_scene, t) for t in (loop.positions, loop.velocities, loop.spins)))
+    if not layout.in_space(a_scene) and a_scene["drive"][0]:
         moved["vx"][a_scene["kind"] == DRIVEN] = a_scene["drive"][0]
-    return dict(a_scene, **moved)
+    return moved
+
+
+def halt():
+    """Take all motion from the bodies of a scene; GrainLoop hears it in the next step, and keeps its springs."""
+    from yade import O
+    from yade.minieigenHP import Vector3
+
+    for body in O.bodies:
+        body.state.vel, body.state.angVel, body.state.angMom = Vector3.Zero, Vector3.Zero, Vector3.Zero
+
+
+def in_order(a_scene, table):
+    """Return a table of the loop's in the order of the scene: a drum's clump comes last among the bodies."""
+    if not is_drum(a_scene):
+        return table
+    ordered = np.empty_like(table)
+    ordered[np.argsort(a_scene["kind"] == WALL, kind="stable")] = table
+    return ordered
 
 
 def kinetic_energy():
-    """Return the kinetic energy of the free disks in O.bodies, velocities half a step behind [J]."""
+    """Return the kinetic energy of the free grains in O.bodies, velocities half a step behind [J]."""
     from yade import O
 
     table = engines.body_table(O._sceneObj)
-    free = np.array([O.bodies[int(i)].state.blockedDOFs == "zXY" for i in table["id"]])
-    spinning = table["radius"] ** 2 / 2 * table["spin"][:, 2] ** 2
-    energy = table["mass"] / 2 * ((table["velocity"] ** 2).sum(axis=1) + spinning)
+    states = [O.bodies[int(i)].state for i in table["id"]]
+    free = np.array([state.blockedDOFs != "xyzXYZ" for state in states])
+    inertia = np.array([state.inertia[2] for state in states])
+    spinning = inertia * (table["spin"] ** 2).sum(axis=1)
+    energy = (table["mass"] * (table["velocity"] ** 2).sum(axis=1) + spinning) / 2
     return float(energy[free].sum())
 
 

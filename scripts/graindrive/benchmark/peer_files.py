@@ -1,5 +1,6 @@
 """What LAMMPS and LIGGGHTS have in common: the data file, a run in a folder, and what its log says."""
 
+import math
 import re
 import resource
 import subprocess
@@ -7,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-# What follows the settings of either peer: gravity, the plane, and the energies that its log is asked for.
-STEPS = """pair_coeff * *
-timestep {dt}
-fix weight free gravity {gravity} vector 0 -1 0
-fix plane all enforce2d
+from . import layout
+
+# What follows the settings of either peer: gravity, the plane of disks, and the energies that its log is asked for.
+STEPS = """timestep {dt}
+fix weight free gravity {weight} vector {down}
+{plane}
 compute slide free ke
 compute turn free erotate/sphere
 thermo {thermo}
@@ -26,22 +28,55 @@ def skin(a_scene):
     return 0.1 * 2 * float(np.median(a_scene["r"]))
 
 
+def boundary(a_scene):
+    """Return the peers' words for the box's sides: p periodic, f fixed; disks lie in a plane that is periodic along z."""
+    sides = ["p" if period else "f" for period in layout.periods(a_scene)]
+    return " ".join(sides if layout.in_space(a_scene) else [*sides[:2], "p"])
+
+
+def box(a_scene):
+    """Return low and high ends of the box along x, y and z: a period, or far beyond all grains; disks have z = -0.5 to 0.5."""
+    margin = 20 * a_scene["r"].max()
+    ends = []
+    for period, x in zip(layout.periods(a_scene), layout.places(a_scene).T):
+        ends.append((0.0, period) if period else (x.min() - margin, x.max() + margin))
+    return ends if layout.in_space(a_scene) else [*ends[:2], (-0.5, 0.5)]
+
+
 def write_data(a_scene, folder, size_of):
-    """Write scene.data; `size_of(i)` gives diameter and density of disk i in the columns of the peer's atom style."""
-    kind, r, period = a_scene["kind"], a_scene["r"], float(a_scene["period"])
-    margin = 20 * r.max()
-    low, high = a_scene["y"].min() - margin, a_scene["y"].max() + margin
-    left, right = (0, period) if period > 0 else (a_scene["x"].min() - margin, a_scene["x"].max() + margin)
-    x = a_scene["x"] % period if period > 0 else a_scene["x"]
-    lines = [
-        f"scene\n\n{len(r)} atoms\n3 atom types\n\n{left:.17g} {right:.17g} xlo xhi\n{low:.17g} {high:.17g} ylo yhi"
-    ]
-    lines.append("-0.5 0.5 zlo zhi\n\nAtoms\n")
-    lines += [f"{i + 1} {kind[i] + 1} {size_of(i)} {x[i]:.17g} {a_scene['y'][i]:.17g} 0" for i in range(len(r))]
+    """Write scene.data; `size_of(i)` gives diameter and density of grain i in the columns of the peer's atom style."""
+    place = layout.places(a_scene)
+    for axis, period in enumerate(layout.periods(a_scene)):
+        if period:
+            place[:, axis] %= period
+    lines = [f"scene\n\n{len(place)} atoms\n3 atom types\n"]
+    lines += [f"{low:.17g} {high:.17g} {axis}lo {axis}hi" for (low, high), axis in zip(box(a_scene), "xyz")]
+    kind = a_scene["kind"]
+    lines.append("\nAtoms\n")
+    lines += [f"{i + 1} {kind[i] + 1} {size_of(i)} {words(at)}" for i, at in enumerate(place)]
     lines.append("\nVelocities\n")
-    v = a_scene["vx"], a_scene["vy"], a_scene["spin"]
-    lines += [f"{i + 1} {v[0][i]:.17g} {v[1][i]:.17g} 0 0 0 {v[2][i]:.17g}" for i in range(len(r))]
+    motion = np.hstack([layout.velocities(a_scene), layout.spins(a_scene)])
+    lines += [f"{i + 1} {words(row)}" for i, row in enumerate(motion)]
     (Path(folder) / "scene.data").write_text("\n".join(lines) + "\n")
+
+
+def words(numbers):
+    """Return numbers to the last bit, with spaces between."""
+    return " ".join(f"{number:.17g}" for number in numbers)
+
+
+def last_lines(a_scene, steps):
+    """Return STEPS for a scene."""
+    gravity = layout.gravity(a_scene)
+    weight = math.hypot(*gravity)
+    return STEPS.format(
+        dt=float(a_scene["dt"]),
+        weight=f"{weight:.17g}",
+        down=words(gravity) if weight else "0 -1 0",
+        plane="" if layout.in_space(a_scene) else "fix plane all enforce2d",
+        steps=steps,
+        thermo=max(steps, 1),
+    )
 
 
 def run(command, a_scene, settings, steps, folder, name):
@@ -60,8 +95,7 @@ def run(command, a_scene, settings, steps, folder, name):
 
 def run_once(command, a_scene, settings, steps, folder, name):
     """Run the input; return the log and the processor time of the whole program [s]."""
-    last = STEPS.format(dt=float(a_scene["dt"]), gravity=float(a_scene["gravity"]), steps=steps, thermo=max(steps, 1))
-    (Path(folder) / "scene.in").write_text(settings + last)
+    (Path(folder) / "scene.in").write_text(settings + last_lines(a_scene, steps))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [*command, "-in", "scene.in", "-log", "scene.log", "-screen", "none"],

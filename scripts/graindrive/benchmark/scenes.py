@@ -1,15 +1,12 @@
-"""The scenes that are timed: disks, walls, what is driven, and the law, as one dict of arrays and numbers each.
-
-A scene has x, y, r, vx, vy, spin, kind of shape (n,) (kind: 0 free, 1 wall, 2 driven disk), velocities on the step, and
-law, constants, friction, gravity, dt, period (in x, 0 for none), drive (vx, vy, spin of the driven disk or of the drum).
-"""
+"""The scenes that are timed, each under its name: beds, channels and drums of disks here, beds of spheres in lift.py."""
 
 import numpy as np
 
 from .. import cache, channel
 from ..material import HertzHistoryMaterial
+from . import layout, lift
+from .layout import DRIVEN, FREE, WALL
 
-FREE, WALL, DRIVEN = 0, 1, 2
 RECIPE = 2  # raise it when a scene comes out different
 
 WIGGLE = dict(law="hertzHistory", constants=(2e6, 2.46e6, 2500.0, 2500.0), density=1.0)
@@ -79,8 +76,7 @@ def bed(width, rows):
         period=float(width),
         drive=(0.0, 0.0, 0.0),
     )
-    settled = run(poured, at_rest, dt=3e-4)
-    return dict(settled, **{key: np.zeros(len(settled["x"])) for key in ("vx", "vy", "spin")})
+    return layout.at_standstill(run(poured, at_rest, dt=3e-4))
 
 
 def bed10k():
@@ -90,9 +86,7 @@ def bed10k():
 
 def wiggle63k():
     """Return 63,000 settled disks: three beds side by side, each periodic, so that the seams fit."""
-    one = bed(100, 237)
-    copies = {key: np.tile(one[key], 3) for key in ("r", "vx", "vy", "spin", "kind", "y")}
-    return dict(one, **copies, x=np.concatenate([one["x"] + shift for shift in (0, 100, 200)]), period=300.0)
+    return layout.beside_each_other(bed(100, 237), 3)
 
 
 def magnus(fraction):
@@ -148,4 +142,6 @@ def drum150():
     return run(start, lambda loop, steps: steps >= 300_000)
 
 
-SCENES = {f.__name__: f for f in (bed10k, magnus_dilute, magnus_dense, wiggle63k, drum150)}
+OF_DISKS = bed10k, magnus_dilute, magnus_dense, wiggle63k, drum150
+OF_SPHERES = lift.lift20k, lift.lift190k, lift.lift_flow
+SCENES = {f.__name__: f for f in (*OF_DISKS, *OF_SPHERES)}
