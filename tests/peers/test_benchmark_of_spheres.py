@@ -72,16 +72,21 @@ def test_a_settled_bed_lies_still_on_its_base(bed):
     assert 0.5 < (4 / 3 * np.pi * bed["r"][free] ** 3).sum() / (64 * D**2 * bed["z"].max()) < 0.68
 
 
-def test_a_settled_bed_is_carried_by_its_contacts(bed):
-    table = contacts(bed)
-    force = np.zeros((len(bed["r"]), 3))
-    np.add.at(force, table["j"], table["normal_force"])
-    np.add.at(force, table["i"], -table["normal_force"])
-    mass, _ = layout.masses(bed)
+def test_a_settled_bed_is_carried_by_its_base(bed):
+    """The springs of the bed's making are lost, so it settles once more; then friction carries its part as well."""
+    ours.bodies(bed)
+    loop = ours.grain_loop(bed)
     free = bed["kind"] == layout.FREE
-    weight = mass[free].sum() * lift.GRAVITY
-    # Normal forces alone, the springs are lost: friction carries no weight in the sum over a layer, up to its own fluctuation.
-    assert force[~free, 2].sum() == pytest.approx(-weight, rel=0.1)
+    weight = layout.masses(bed)[0][free].sum() * lift.GRAVITY
+    O.run(3000, True)
+    borne = []
+    for _ in range(40):
+        O.run(50, True)
+        table = loop.presentContacts()
+        of_base = ~free[table["j"]] ^ ~free[table["i"]]
+        sign = np.where(free[table["j"]], 1, -1)[of_base]
+        borne.append((sign * (table["normal_force"] + table["tangential_force"])[of_base, 2]).sum())
+    assert np.mean(borne) == pytest.approx(weight, rel=0.01)  # it swings by some percent still, over many periods
 
 
 def test_beds_side_by_side_fit_at_their_seams(bed):

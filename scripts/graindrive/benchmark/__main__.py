@@ -5,7 +5,8 @@ usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel N
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
   --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres);
                 without it all of them, in that order
-  --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache
+  --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache,
+                half as long again for lift190k
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
   --kernel NAME instructions that GrainLoop runs on: avx512, avx2 or portable; by default the best of this processor
   --lammps COMMAND  another LAMMPS than Debian's `lmp`, such as one built for this processor
@@ -194,7 +195,7 @@ def against_liggghts(name, a_scene, folder, rounds, steps):
     twin = a_scene if str(a_scene["law"]) == "hertzRestitution" else with_restitution(a_scene)
     path = save(twin, folder, "restitution.npz")
     liggghts.write(twin, folder)
-    compared = min(COMPARED, steps) if layout.in_space(twin) else steps
+    compared = min(COMPARED, 3 * steps) if layout.in_space(twin) else steps
     run = functools.partial(liggghts.run, folder=folder)
     yield against("LIGGGHTS", run, name, twin, path, 1, rounds, steps, compared)
 
@@ -258,13 +259,13 @@ def save(a_scene, folder, file_name):
 def portions(a_scene, quick):
     """Return how many portions are timed, and the steps of each: fewer of scenes that cost more.
 
-    LIGGGHTS takes half a microsecond for a step of a sphere: the 190,000 have 50 steps a portion where all must end in a minute.
+    A peer's step of a sphere takes up to half a microsecond, and quick runs of spheres are mostly spent on comparing energies.
     """
-    rounds, steps = (3, 1000) if quick else (5, 3000)
     size = len(a_scene["x"])
     if layout.in_space(a_scene):
         many = size > 100_000
-        return (2, 50) if many and quick else (rounds, steps // (10 if many else 3))
+        return ((2, 25) if many else (3, 100)) if quick else (5, 300 if many else 1000)
+    rounds, steps = (3, 1000) if quick else (5, 3000)
     return rounds, steps // (3 if size > 21_000 else 1)
 
 
