@@ -13,20 +13,13 @@ namespace {
 struct BodyRecord {
 	int exists = 0, clump = -1;
 	Real radius = 0, mass = 0;
-	std::uint64_t surface = 0;  // of a solid: a hash of its recipe
+	std::uint64_t surface = 0;  // of a solid: a checksum of its recipe
 	unsigned blocked = 0;
 	Real position[3] = {}, orientation[4] = {}, velocity[3] = {}, spin[3] = {}, momentum[3] = {};
 };
 
 void copy(const Vector3r& from, Real* to) { std::copy(from.data(), from.data() + 3, to); }
 Vector3r vector(const Real* from) { return { from[0], from[1], from[2] }; }
-
-std::uint64_t hash_of(const std::string& text)
-{
-	std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
-	for (const unsigned char byte : text) hash = (hash ^ byte) * 1099511628211ull;
-	return hash;
-}
 
 BodyRecord record(const yade::BodyContainer& bodies, int id)
 {
@@ -35,7 +28,7 @@ BodyRecord record(const yade::BodyContainer& bodies, int id)
 	const yade::Body& body = *bodies[id];
 	const yade::State& s = *body.state;
 	if (const auto* disk = dynamic_cast<const yade::Sphere*>(body.shape.get())) r.radius = disk->radius;
-	if (is_solid(body.shape.get())) r.surface = hash_of(static_cast<const Solid&>(*body.shape).recipe);
+	if (is_solid(body.shape.get())) r.surface = loop::checksum_of(static_cast<const Solid&>(*body.shape).recipe);
 	r.exists = 1, r.clump = body.clumpId, r.mass = s.mass, r.blocked = s.blockedDOFs;
 	copy(s.pos, r.position), copy(s.vel, r.velocity), copy(s.angVel, r.spin), copy(s.angMom, r.momentum);
 	std::copy(s.ori.coeffs().data(), s.ori.coeffs().data() + 4, r.orientation);

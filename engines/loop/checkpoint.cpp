@@ -21,13 +21,6 @@ constexpr std::size_t magic_length = 16, header_length = magic_length + 3 * size
 std::string magic(Contents contents) { return contents == Contents::loop ? "GRAINDRIVE-LOOP\n" : "GRAINDRIVE-YADE\n"; }
 const char* words(Contents contents) { return contents == Contents::loop ? "GrainLoop" : "a scene on YADE's loop"; }
 
-std::uint64_t fnv1a(const std::string& bytes)
-{
-	std::uint64_t hash = 14695981039346656037ull;
-	for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211ull;
-	return hash;
-}
-
 [[noreturn]] void refuse(const std::string& path, const std::string& why)
 {
 	throw std::runtime_error("checkpoint " + path + ": " + why);
@@ -56,9 +49,16 @@ struct Temporary {
 
 }  // namespace
 
+std::uint64_t checksum_of(const std::string& bytes)
+{
+	std::uint64_t hash = 14695981039346656037ull;
+	for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211ull;
+	return hash;
+}
+
 void write_checkpoint(const std::string& path, const std::string& body, Contents contents)
 {
-	const std::uint64_t numbers[3] = { checkpoint_version, body.size(), fnv1a(body) };
+	const std::uint64_t numbers[3] = { checkpoint_version, body.size(), checksum_of(body) };
 	Temporary beside{ path + ".part", ::open((path + ".part").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666) };
 	if (beside.file < 0) refuse(path, std::string("cannot be written: ") + std::strerror(errno));
 	write_all(beside.file, magic(contents) + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers) + body, path);
@@ -104,7 +104,7 @@ std::string read_checkpoint(const std::string& path, Contents expected)
 		refuse(path,
 			"was cut short: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
 	std::string body = all.substr(header_length);
-	if (fnv1a(body) != numbers[2]) refuse(path, "is damaged: its checksum does not fit its contents");
+	if (checksum_of(body) != numbers[2]) refuse(path, "is damaged: its checksum does not fit its contents");
 	return body;
 }
 

@@ -30,6 +30,9 @@ std::string read_checkpoint(const std::string& path, Contents expected = Content
 /// The caller's text of a loop's checkpoint, without the loop. @throws as read_checkpoint
 std::string read_companion(const std::string& path);
 
+/// FNV-1a, by which a file knows its body and a scene its solids.
+std::uint64_t checksum_of(const std::string& bytes);
+
 /// What a file says that it holds; a loop where it says nothing that is known.
 Contents contents_of(const std::string& path);
 

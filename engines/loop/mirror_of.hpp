@@ -126,24 +126,15 @@ private:
 	std::vector<SeenContact> seen(const std::vector<Contact<D>>& pairs, const std::vector<Contact<D>>& surfaces) const;
 };
 
-template <int D>
-Wall<D> in_dimension(const Wall<3>& wall)
+/// The same wall with the axes that `To` dimensions have.
+template <int To, int From>
+Wall<To> in_dimension(const Wall<From>& wall)
 {
-	Wall<D> to;
+	Wall<To> to;
 	to.side = wall.side, to.position = wall.position, to.velocity = wall.velocity;
 	to.pressed = wall.pressed, to.pressure = wall.pressure, to.mass = wall.mass, to.damping = wall.damping;
 	to.speed_limit = wall.speed_limit;
-	for (int k = 0; k < D; ++k) to.slide[k] = wall.slide[k], to.force[k] = wall.force[k];
-	return to;
-}
-template <int D>
-Wall<3> in_space(const Wall<D>& wall)
-{
-	Wall<3> to;
-	to.side = wall.side, to.position = wall.position, to.velocity = wall.velocity;
-	to.pressed = wall.pressed, to.pressure = wall.pressure, to.mass = wall.mass, to.damping = wall.damping;
-	to.speed_limit = wall.speed_limit;
-	for (int k = 0; k < D; ++k) to.slide[k] = wall.slide[k], to.force[k] = wall.force[k];
+	for (int k = 0; k < std::min(To, From); ++k) to.slide[k] = wall.slide[k], to.force[k] = wall.force[k];
 	return to;
 }
 

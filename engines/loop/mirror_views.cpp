@@ -178,7 +178,7 @@ template <int D>
 std::vector<Wall<3>> MirrorOf<D>::walls() const
 {
 	std::vector<Wall<3>> all;
-	for (const Wall<D>& wall : stepper->settings().walls) all.push_back(in_space(wall));
+	for (const Wall<D>& wall : stepper->settings().walls) all.push_back(in_dimension<3>(wall));
 	return all;
 }
 

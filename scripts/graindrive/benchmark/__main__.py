@@ -42,7 +42,7 @@ SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05, "hertzRestitution": 1e-3}
 # Spheres: LAMMPS's `granular` takes half an overlap off the torque's lever, LIGGGHTS off both levers, and deep beds overlap by
 # several hundredths of a radius. What is left of a settled bed's energy then differs by 5e-3 (LAMMPS) and 2.5e-2 (LIGGGHTS);
 # without friction by 1e-13. Hence two comparisons: with friction, and of the same scene without it. In the first step of a scene
-# that moves LIGGGHTS damps otherwise: 3e-4 in small flows, and no more after it.
+# that moves LIGGGHTS differs by up to 3e-4 after the first steps, and no more later; why has not been found.
 SAME_SPHERES, SAME_SMOOTH_SPHERES, SAME_SMOOTH_FLOW_IN_LIGGGHTS = 0.05, 1e-9, 1e-3
 SAME_ON_YADES_LOOP = 1e-5  # the same law, by the same formulas
 WARM_UP = 10  # steps
