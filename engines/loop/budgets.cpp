@@ -12,8 +12,11 @@ namespace {
 
 constexpr double fewest_steps = 20, most_steps = 200;  // between two selections, aimed at where grains are fast
 constexpr double smallest_part = 0.001;                // budget [d]
-constexpr double largest_part = 0.25;                  // of the skin
 constexpr double horizon_in_paces = 1.25;              // how long a selection may last, should budgets not be used up
+
+/// Of the skin.
+template <int D>
+constexpr double largest_part = D == 2 ? 0.25 : 0.15;
 
 /// s, of looking at a candidate, over p, of computing a pair (measured).
 template <int D>
@@ -110,7 +113,7 @@ void Budgets<D>::allow_travel()
 		expected[pair.first] = std::max(expected[pair.first], speed[pair.second]);
 		expected[pair.second] = std::max(expected[pair.second], speed[pair.first]);
 	}
-	const double least = smallest(), most = largest_part * state.skin;
+	const double least = smallest(), most = largest_part<D> * state.skin;
 	state.travelled.resize(speed.size());
 	state.allowed.resize(speed.size());
 	for (std::size_t p = 0; p < state.allowed.size(); ++p)

@@ -1,4 +1,4 @@
-/// Lays the grid, enters grains, and lets cells see their neighbours axis by axis.
+/// Lays the grid, enters grains, and joins cells to cubes axis by axis.
 #include "engines/loop/relative_motion_grid.hpp"
 
 #include <algorithm>
@@ -8,8 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double cell_width = 3;     // at least [d]
-constexpr int most_along_axis = 64;  // cells
+constexpr double cells_per_grain = 2;  // at most; wider cells where a box is mostly empty
 
 }  // namespace
 
@@ -23,17 +22,20 @@ RelativeMotionGrid::RelativeMotionGrid(const State<3>& of, double until) : state
 {
 	lay();
 	for (std::uint32_t row = 0; row < state.n; ++row) enter(row);
-	for (int axis = 0; axis < 3; ++axis) spread_along(axis);
+	for (int axis = 0; axis < 3; ++axis) join_next_along(axis);
 }
 
-/// Cells are so wide that free grains that may touch lie in adjacent ones; a larger member enters all that its box meets.
+/// Cells are so wide that free grains that may touch lie in adjacent ones, and no wider: the more a cell spans, the more its grains
+/// have gone differently in a shear. A larger member enters all that its box meets.
 void RelativeMotionGrid::lay()
 {
-	double most_allowed = 0, fastest = 0;
+	double most_allowed = 0;
 	for (const double budget : state.allowed) most_allowed = std::max(most_allowed, budget);
-	for (const Vec<3>& drift : state.drifts) fastest = std::max(fastest, length(drift));
-	const double wanted =
-		std::max(cell_width * state.typical_diameter, 2 * state.largest_free_radius + 2 * most_allowed + 2 * fastest * horizon);
+	Vec<3> slowest = Vec<3>::all(HUGE_VAL), fastest = Vec<3>::all(-HUGE_VAL);
+	for (const Vec<3>& drift : state.drifts)
+		for (int k = 0; k < 3; ++k) slowest[k] = std::min(slowest[k], drift[k]), fastest[k] = std::max(fastest[k], drift[k]);
+	double wanted = 2 * state.largest_free_radius + 2 * most_allowed;
+	if (!state.drifts.empty()) wanted += length(fastest - slowest) * horizon;
 	const Cell<3>& cell = state.scene.cell;
 	Vec<3> low = Vec<3>::all(HUGE_VAL), high = Vec<3>::all(-HUGE_VAL);
 	for (std::uint32_t i = 0; i < state.n; ++i)
@@ -41,9 +43,17 @@ void RelativeMotionGrid::lay()
 			low[k] = std::min(low[k], state.rows[i].x[k]), high[k] = std::max(high[k], state.rows[i].x[k]);
 	for (int k = 0; k < 3; ++k) {
 		if (cell.periodic[k]) low[k] = cell.low[k], high[k] = cell.high[k];
-		cells[k] = std::clamp(int((high[k] - low[k]) / wanted), 1, most_along_axis);
 		corner[k] = low[k];
-		width[k] = std::max((high[k] - low[k]) / cells[k], wanted * 1e-3);
+	}
+	const double enough = cells_per_grain * state.n + 8;
+	double count = HUGE_VAL;
+	for (; count > enough; wanted *= 1.3) {
+		count = 1;
+		for (int k = 0; k < 3; ++k) {
+			cells[k] = int(std::clamp((high[k] - low[k]) / wanted, 1.0, enough));
+			width[k] = std::max((high[k] - low[k]) / cells[k], wanted * 1e-3);
+			count *= cells[k];
+		}
 	}
 	motions.resize(std::size_t(cells[0]) * cells[1] * cells[2]);
 }
@@ -73,21 +83,18 @@ void RelativeMotionGrid::enter(std::uint32_t row)
 			for (int z = first[2]; z <= last[2]; ++z) at(within(0, x), within(1, y), within(2, z)).include(motion);
 }
 
-/// Each cell takes in what its neighbours along an axis have; after the three axes all 26.
-void RelativeMotionGrid::spread_along(int axis)
+/// Each cell takes in what the next one along an axis has; after the three axes all of a cube of eight. Two grains in adjacent cells lie
+/// in one such cube.
+void RelativeMotionGrid::join_next_along(int axis)
 {
 	const std::vector<Motion> before = motions;
 	const std::size_t stride = axis == 0 ? std::size_t(cells[1]) * cells[2] : axis == 1 ? cells[2] : 1;
 	for (std::size_t c = 0; c < motions.size(); ++c) {
 		const int place = int(c / stride % cells[axis]);
-		for (const int step : { -1, 1 }) {
-			int to = place + step;
-			if (to < 0 || to >= cells[axis]) {
-				if (!state.scene.cell.periodic[axis]) continue;
-				to = (to + cells[axis]) % cells[axis];
-			}
-			motions[c].include(before[c + (std::ptrdiff_t(to) - place) * std::ptrdiff_t(stride)]);
-		}
+		if (place + 1 < cells[axis])
+			motions[c].include(before[c + stride]);
+		else if (state.scene.cell.periodic[axis])
+			motions[c].include(before[c - place * stride]);
 	}
 }
 

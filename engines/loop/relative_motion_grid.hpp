@@ -1,6 +1,6 @@
 /// How much nearer two spheres can have come to each other since the last search: by what spheres of one neighbourhood have gone differently.
 ///
-/// A pair that may touch before the next selection lies in two adjacent cells of a coarse grid now, so the displacements since the search
+/// A pair that may touch before the next selection lies in two adjacent cells of a grid now, so the displacements since the search
 /// need comparing there alone: a bed that flows as a whole, or shears slowly, needs no new search however far it has gone.
 #pragma once
 #include "engines/loop/pair_geometry.hpp"
@@ -30,7 +30,7 @@ private:
 	void lay();
 	void enter(std::uint32_t row);
 	Motion& at(int x, int y, int z) { return motions[(std::size_t(x) * cells[1] + y) * cells[2] + z]; }
-	void spread_along(int axis);
+	void join_next_along(int axis);
 };
 
 }  // namespace graindrive::loop

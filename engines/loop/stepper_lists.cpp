@@ -8,8 +8,10 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_searches = 300;              // aimed at, where grains are fast
-constexpr double smallest_skin = 0.1, largest_skin = 0.35;  // [d]
+constexpr double steps_between_searches = 300;  // aimed at, where grains are fast
+constexpr double smallest_skin = 0.1;           // [d]
+template <int D>
+constexpr double largest_skin = D == 2 ? 0.35 : 0.6;  // [d], measured: where grains flow, searches are rarer
 
 }  // namespace
 
@@ -66,7 +68,7 @@ template <int D>
 void Stepper<D>::begin_search()
 {
 	const double d = state.typical_diameter, wanted = budgets.fastest_approach() * state.scene.dt * steps_between_searches;
-	state.skin = state.scene.skin > 0 ? state.scene.skin : std::clamp(wanted, smallest_skin * d, largest_skin * d);
+	state.skin = state.scene.skin > 0 ? state.scene.skin : std::clamp(wanted, smallest_skin * d, largest_skin<D> * d);
 	wrap_into_cell();
 	pairs.begin_search(given_springs);
 	given_springs.clear();

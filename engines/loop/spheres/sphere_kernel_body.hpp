@@ -28,7 +28,7 @@ struct SphereBody {
 private:
 	typedef double Four __attribute__((vector_size(32)));
 	static constexpr std::uint32_t packs_at_once = 12;
-	static constexpr std::uint32_t prefetched_ahead = 96;  // pairs
+	static constexpr std::uint32_t rows_ahead = 96, groups_ahead = 48;  // prefetched, in pairs
 
 	/// Number by number: from a copy as a whole the compiler fuses other products, and results would differ in the last bit.
 	static inline Law law_of(const SphereStep& step)
@@ -73,7 +73,8 @@ private:
 		for (std::uint32_t k = 0; k < packs_at_once && at < end; ++k, at += S::width) {
 			Group& group = groups[at / Group::size];
 			const std::uint32_t lane = at % Group::size;
-			prefetch(step.rows, groups, at + prefetched_ahead);
+			prefetch_rows(step.rows, groups, at + rows_ahead);
+			if (lane == 0) prefetch_group(groups[(at + groups_ahead) / Group::size]);
 			S column[Turn::columns_written];
 			bool wrapped = share.wrapped[at / Group::size];
 			asm volatile("" : "+r"(wrapped));  // or the compiler makes a loop for either, with a copy of the law in each
@@ -123,7 +124,7 @@ private:
 	}
 
 	/// Partners' rows come from far away: they are called in time. Groups end with as many links that may be read.
-	static inline void prefetch(const SphereRow* rows, const Group* groups, std::uint32_t at)
+	static inline void prefetch_rows(const SphereRow* rows, const Group* groups, std::uint32_t at)
 	{
 		const PairLink* links = groups[at / Group::size].links + at % Group::size;
 		for (int k = 0; k < S::width; ++k) {
@@ -131,6 +132,14 @@ private:
 			_mm_prefetch(row, _MM_HINT_T0);
 			_mm_prefetch(row + 64, _MM_HINT_T0);
 		}
+	}
+
+	/// Springs and constants are read once a step: they are called past the large caches, which are left to rows (1.2 times the rate at
+	/// 190,000 spheres, nothing at 20,000).
+	static inline void prefetch_group(const Group& group)
+	{
+		const char* line = reinterpret_cast<const char*>(group.spring);
+		for (; line < reinterpret_cast<const char*>(&group + 1); line += 64) _mm_prefetch(line, _MM_HINT_NTA);
 	}
 
 	static inline Four load(const double* from)

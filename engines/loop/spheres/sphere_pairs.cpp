@@ -109,81 +109,112 @@ PairCounts SpherePairs::select(const Source& source)
 	return precision == Precision::double_ ? select_in<double>(source) : select_in<float>(source);
 }
 
+/// Puts the candidates of the owners [first, end) that may touch before the next selection into `chosen`. Without a branch for near or
+/// far: half of them are either, in no order that a processor could foresee.
+void SpherePairs::choose(const Source& source, std::uint32_t first, std::uint32_t end, PairCounts& counts)
+{
+	const State<3>& s = source.state;
+	const std::vector<std::uint32_t>& begin = s.pairs.candidate_begin;
+	chosen.resize(begin[end] - begin[first] + 1);
+	std::uint32_t n = 0;
+	for (std::uint32_t a = first; a < end; ++a) {
+		const SphereRow& one = s.rows[a];
+		const std::uint32_t party = s.party_of(a);
+		const double own = s.allowed[party];
+		for (std::uint32_t c = begin[a]; c < begin[a + 1]; ++c) {
+			const Partner partner = s.pairs.partners[c];
+			const SphereRow& other = s.rows[partner.row()];
+			Vec<3> d = other.x - one.x;
+			if (partner.wrapped()) d = s.scene.cell.nearest(d).at;
+			const double square = geometry::squared_norm(d), touch = one.radius + other.radius;
+			const std::uint32_t other_party = s.party_of(partner.row());
+			const double approach = length(s.drifts[other_party] - s.drifts[party]) * source.horizon;
+			const double budget = own + s.allowed[other_party] + approach;
+			const double half = touch + std::max(budget / 2, std::min(budget, 2 * source.smallest_budget));
+			counts.by_half_budgets += square < half * half;
+			chosen[n] = { a, c };
+			n += square < (touch + budget) * (touch + budget);
+		}
+	}
+	chosen.resize(n);
+}
+
+/// Puts those of the owners [first, end) into `chosen` that the state lists.
+void SpherePairs::choose_listed(const Source& source, std::uint32_t first, std::uint32_t end)
+{
+	const SpherePairState& pairs = source.state.pairs;
+	const auto before = [](const ListedPair& pair, std::uint32_t candidate) { return pair.candidate < candidate; };
+	auto listed = std::lower_bound(pairs.listed.begin(), pairs.listed.end(), pairs.candidate_begin[first], before);
+	chosen.clear();
+	for (std::uint32_t a = first; a < end; ++a)
+		for (; listed != pairs.listed.end() && listed->candidate < pairs.candidate_begin[a + 1]; ++listed)
+			chosen.push_back({ a, listed->candidate });
+}
+
+/// Lays out the pairs of the owners [first, end), but for those with partners beyond the share: these are early.
+template <class P>
+void SpherePairs::take_pairs_of(const Source& source, std::uint32_t first, std::uint32_t end, Layer<P>& layer, PairCounts& counts)
+{
+	const SpherePairState& pairs = source.state.pairs;
+	const std::uint32_t share_end = source.owner_begin >= source.state.n_free ? source.owner_begin : source.owner_end;
+	source.as_listed ? choose_listed(source, first, end) : choose(source, first, end, counts);
+	counts.selected += chosen.size();
+	for (const Chosen& pair : chosen) {
+		const std::uint32_t old_place = old_places[pair.candidate - first_candidate];
+		const Partner partner = pairs.partners[pair.candidate];
+		if (partner.row() >= share_end) {
+			early.push_back({ pair, old_place });
+			continue;
+		}
+		layer.put(pair.owner, partner, old_place);
+		place[pair.candidate - first_candidate] = layer.next;  // 1 + the place
+	}
+}
+
+template <class P>
+void SpherePairs::lay_early_pairs(const Source& source, Layer<P>& layer)
+{
+	constexpr std::uint32_t group_size = PairGroup<P>::size;
+	layer.pad();
+	view.early_begin = layer.next;
+	early_links.clear();
+	for (const EarlyPair& pair : early) {
+		layer.put(pair.owner, source.state.pairs.partners[pair.candidate], pair.old_place);
+		place[pair.candidate - first_candidate] = layer.next;
+		early_links.push_back(layer.groups[(layer.next - 1) / group_size].links[(layer.next - 1) % group_size]);
+	}
+	layer.pad();
+	view.early_end = layer.next;
+	early_forces.resize(view.early_end - view.early_begin);
+}
+
 template <class P>
 PairCounts SpherePairs::select_in(const Source& source)
 {
 	constexpr std::uint32_t group_size = PairGroup<P>::size;
 	const State<3>& s = source.state;
-	const SpherePairState& pairs = s.pairs;
-	const bool of_members = source.owner_begin >= s.n_free;
 	owner_begin = source.owner_begin, owner_end = source.owner_end;
-	const std::uint32_t range_end = of_members ? owner_begin : owner_end;  // pairs with partners beyond are early
-	const std::uint32_t candidates_end = pairs.candidate_begin[owner_end];
-	first_candidate = pairs.candidate_begin[owner_begin];
-	place.resize(candidates_end - first_candidate, 0);
+	first_candidate = s.pairs.candidate_begin[owner_begin];
+	const std::uint32_t candidates = s.pairs.candidate_begin[owner_end] - first_candidate;
+	place.swap(old_places);
+	old_places.resize(candidates, 0);
+	place.assign(candidates, 0);
 	memory.swap(old_memory);
-	const std::size_t most = (candidates_end - first_candidate + 4 * group_size) / group_size + groups_read_ahead;
-	wrapped.clear(), block_pair_end.clear(), block_early_end.clear(), early.clear(), early_owner.clear(), early_links.clear();
+	const std::size_t most = (candidates + 4 * group_size) / group_size + groups_read_ahead;
+	wrapped.clear(), block_pair_end.clear(), block_early_end.clear(), early.clear();
 	Layer<P> layer{ source, static_cast<PairGroup<P>*>(memory.with_room_for(most * sizeof(PairGroup<P>))),
 		static_cast<const PairGroup<P>*>(old_memory.data()), wrapped };
 	PairCounts counts;
-	std::vector<std::uint32_t> old_early;
-	auto listed = std::lower_bound(pairs.listed.begin(), pairs.listed.end(), first_candidate,
-		[](const ListedPair& pair, std::uint32_t candidate) { return pair.candidate < candidate; });
-	const auto take_pairs_of = [&](std::uint32_t a) {
-		const SphereRow& one = s.rows[a];
-		const std::uint32_t party = s.party_of(a);
-		const double own = s.allowed[party];
-		for (std::uint32_t c = pairs.candidate_begin[a]; c < pairs.candidate_begin[a + 1]; ++c) {
-			const Partner partner = pairs.partners[c];
-			const std::uint32_t b = partner.row();
-			const SphereRow& other = s.rows[b];
-			Vec<3> d = other.x - one.x;
-			if (partner.wrapped()) d = s.scene.cell.nearest(d).at;
-			const double square = geometry::squared_norm(d), touch = one.radius + other.radius;
-			const std::uint32_t other_party = s.party_of(b);
-			const double approach = other_party == party ? 0 : length(s.drifts[other_party] - s.drifts[party]) * source.horizon;
-			const double budget = own + s.allowed[other_party] + approach;
-			const double half = touch + std::max(budget / 2, std::min(budget, 2 * source.smallest_budget));
-			bool near = square < (touch + budget) * (touch + budget);
-			counts.by_half_budgets += square < half * half;
-			std::uint32_t& at = place[c - first_candidate];
-			if (source.as_listed) {
-				near = listed != pairs.listed.end() && listed->candidate == c;
-				listed += near;
-			}
-			counts.selected += near;
-			const std::uint32_t old_place = at;
-			at = 0;
-			if (!near) continue;
-			if (b >= range_end) {
-				early.push_back(c), early_owner.push_back(a), old_early.push_back(old_place);
-				continue;
-			}
-			layer.put(a, partner, old_place);
-			at = layer.next;  // 1 + the place
-		}
-	};
 	for (std::uint32_t block = source.block_begin; block < source.block_end; ++block) {
-		const std::uint32_t end = std::min((block + 1) * grains_per_block, s.n_free);
-		for (std::uint32_t a = block * grains_per_block; a < end; ++a) take_pairs_of(a);
+		const std::uint32_t first = block * grains_per_block;
+		take_pairs_of(source, first, std::min(first + grains_per_block, s.n_free), layer, counts);
 		block_pair_end.push_back(layer.next);
 		block_early_end.push_back(early.size());
 	}
-	if (of_members)
-		for (std::uint32_t a = owner_begin; a < owner_end; ++a) take_pairs_of(a);
-	layer.pad();
-	view.early_begin = layer.next;
-	for (std::size_t e = 0; e < early.size(); ++e) {
-		layer.put(early_owner[e], pairs.partners[early[e]], old_early[e]);
-		place[early[e] - first_candidate] = layer.next;
-		early_links.push_back(layer.groups[(layer.next - 1) / group_size].links[(layer.next - 1) % group_size]);
-	}
-	layer.pad();
-	view.early_end = layer.next;
+	if (owner_begin >= s.n_free) take_pairs_of(source, owner_begin, owner_end, layer, counts);
+	lay_early_pairs(source, layer);
 	for (std::uint32_t k = 0; k < groups_read_ahead; ++k)
 		std::fill_n(layer.groups[layer.next / group_size + k].links, group_size, source.dummy);
-	early_forces.resize(view.early_end - view.early_begin);
 	view.block_begin = source.block_begin, view.block_end = source.block_end;
 	view.groups = layer.groups;
 	view.wrapped = wrapped.data();

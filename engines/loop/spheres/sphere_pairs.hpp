@@ -80,16 +80,28 @@ private:
 	Buffer memory, old_memory;
 	std::vector<std::uint8_t> wrapped;
 	std::vector<std::uint32_t> block_pair_end, block_early_end;
-	std::vector<std::uint32_t> early;  // candidates
-	std::vector<std::uint32_t> early_owner;
+	struct Chosen {
+		std::uint32_t owner, candidate;
+	};
+	struct EarlyPair : Chosen {
+		std::uint32_t old_place;
+	};
+	std::vector<Chosen> chosen;  // of the owners under way
+	std::vector<EarlyPair> early;
 	StreamedVector<ForceLine> early_forces;
 	std::uint32_t first_candidate = 0, owner_begin = 0, owner_end = 0;
-	std::vector<std::uint32_t> place;  // 1 + the place of each candidate of the share; 0: not selected
+	std::vector<std::uint32_t> place, old_places;  // 1 + the place of each candidate of the share; 0: not selected
 
 	template <class P>
 	PairCounts select_in(const Source& source);
 	template <class P>
 	struct Layer;
+	void choose(const Source& source, std::uint32_t first, std::uint32_t end, PairCounts& counts);
+	void choose_listed(const Source& source, std::uint32_t first, std::uint32_t end);
+	template <class P>
+	void take_pairs_of(const Source& source, std::uint32_t first, std::uint32_t end, Layer<P>& layer, PairCounts& counts);
+	template <class P>
+	void lay_early_pairs(const Source& source, Layer<P>& layer);
 	std::size_t group_bytes() const;
 	std::uint32_t group_size() const
 	{
