@@ -264,7 +264,7 @@ def portions(a_scene, quick):
     size = len(a_scene["x"])
     if layout.in_space(a_scene):
         many = size > 100_000
-        return ((2, 25) if many else (3, 100)) if quick else (5, 300 if many else 1000)
+        return ((2, 50) if many else (3, 100)) if quick else (5, 300 if many else 1000)
     rounds, steps = (3, 1000) if quick else (5, 3000)
     return rounds, steps // (3 if size > 21_000 else 1)
 
