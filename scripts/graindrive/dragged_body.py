@@ -117,7 +117,9 @@ def told_by(path):
         raise UsageError(f"shape={one_line(path)}: {type(error).__name__}: {one_line(error, 400)}") from None
     missing = [name for name in ("distance", "low", "high") if name not in names]
     if missing:
-        raise UsageError(f"shape={one_line(path)}: the file must define distance(points), low and high; it lacks {missing[0]}")
+        raise UsageError(
+            f"shape={one_line(path)}: the file must define distance(points), low and high; it lacks {missing[0]}"
+        )
     if np.shape(names["low"]) != (3,) or np.shape(names["high"]) != (3,):
         raise UsageError(f"shape={one_line(path)}: low and high must be three numbers each [d]")
     return names
@@ -132,5 +134,3 @@ def grid(low, high, spacing):
 def names_a_file(shape):
     """True for a shape that a file describes."""
     return intruder.names_a_file(shape) or shape.lower().endswith(SAMPLED)
-
-

@@ -115,6 +115,12 @@ def load_all(ids, force):
         O.engines = [*O.engines[:-1], w.ForceEngine(ids=list(ids), force=force), O.engines[-1]]
 
 
-def unload(ids):
-    """Take the loads of `load_all` from a GrainLoop's bodies."""
-    load_all(ids, (0, 0, 0))
+def check_time_step(dt, material, smallest_radius, overlap):
+    """Return dt/dt_crit of two smallest spheres overlapping by `overlap` radii; UsageError if it is over 1."""
+    critical = material.critical_time_step(smallest_radius, overlap)
+    if dt > critical:
+        raise UsageError(
+            f"time step {dt:.3g} s is over the critical {critical:.3g} s of two touching smallest grains;"
+            f" lower dt_factor, to {0.9 * critical / dt:.2g} times its value or less"
+        )
+    return dt / critical

@@ -13,6 +13,7 @@ from . import cache, engines, packing, progress, scene, space, surfaces
 from .errors import UsageError
 from .material import HertzRestitutionSpheres
 from .progress_line import Calming
+from .yade_march import YadeMarch
 
 RECIPE = 1  # raise it when a bed of the same parameters comes out different
 BED_FRACTION = 0.59  # volume fraction with which the number of grains is reckoned
@@ -85,7 +86,9 @@ def check(bed):
     if min(below, above) < 1:
         raise UsageError(f"a bed with {below} grains below the body and {above} above it is none; enlarge the box")
     if below + above > MOST_GRAINS:
-        raise UsageError(f"the bed has {below + above:.3g} grains, more than {MOST_GRAINS:.0e}; lower width, breadth or height")
+        raise UsageError(
+            f"the bed has {below + above:.3g} grains, more than {MOST_GRAINS:.0e}; lower width, breadth or height"
+        )
 
 
 def poured(bed):
@@ -226,7 +229,7 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
     def look(done):
         if done < aim.least_steps:
             return False
-        state.see(-sum(binner.lastForce[2] for binner in binners), aim.energy)
+        state.see(-sum(binner.lastForce[2] for binner in binners))
         if aim.energy < bed.rest and abs(state.error) < LOAD_ERROR:
             return True
         if state.passes_the_weight:
@@ -234,7 +237,7 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
         return False
 
     most = round(aim.least_steps) + MOST_LOOKS * LOOK_EVERY
-    progress.run_blocks(most, LOOK_EVERY, look, grains=len(ids), label=label, aim=aim)
+    progress.run_blocks(YadeMarch(len(ids)), most, LOOK_EVERY, look, label=label, aim=aim)
     if not (aim.energy < bed.rest and abs(state.error) < LOAD_ERROR):
         raise RuntimeError(
             f"the bed does not come to rest: {aim.energy:.2g} m g d of kinetic energy per grain, the forces on base and body"
@@ -249,13 +252,12 @@ class Swing:
     """What is borne of a weight, and whether it has just passed through the weight."""
 
     def __init__(self, weight):
-        self.weight, self.error, self.energy, self.passes_the_weight = weight, -1.0, 0.0, False
+        self.weight, self.error, self.passes_the_weight = weight, -1.0, False
 
-    def see(self, force, energy):
-        """Note the force that is borne now, and the kinetic energy."""
+    def see(self, force):
+        """Note the force that is borne now."""
         error = force / self.weight - 1
-        self.passes_the_weight = error * self.error <= 0 and energy < max(self.energy, energy * 1.01)
-        self.error, self.energy = error, energy
+        self.passes_the_weight, self.error = error * self.error <= 0, error
 
 
 def total_weight(bed, ids, lids, gravity, lid):
@@ -289,3 +291,28 @@ def cap(above_centre, r):
     """Return the volume of spheres of radius r below a plane `above_centre` over their centres."""
     t = np.clip(above_centre + r, 0, 2 * r)
     return np.pi * t**2 * (r - t / 3)
+
+
+FACTS = ("bulk_fraction", "effective_depth", "bed_weight", "lid_weight")
+
+
+def facts(bed, lid, found):
+    """Return what a bed at rest (`at_rest`) is and weighs, a dict of `FACTS`.
+
+    bulk_fraction is the volume fraction away from base and surface, without the solid. effective_depth [m] is the weight of
+    all grains above the solid's origin, the solid's upper part taken as filled with grains, over that of a unit of
+    bed: h + (pi d/6) rho*/rho of Guillard et al. for a lid with a grain on each d^2. Weights in N, as gravity acts.
+    """
+    z, r, area = found["x"][:, 2], found["r"], bed.width * bed.breadth
+    volumes = 4 / 3 * np.pi * r**3
+    surface = float((z + r).max())
+    low, high = (share * surface for share in (0.2, 0.85))
+    slab = area * (high - low) - bed.volume
+    fraction = float(fraction_by_height(z, r, np.array([low, high]), area)[0] * area * (high - low) / slab)
+    above = float(volumes.sum() - cap(bed.axis - z, r).sum()) / area + fraction * bed.volume / 2 / area
+    lid_volume = len(found["lid"]) * np.pi / 6 * bed.d**3 * lid.density / bed.material.density
+    depth = (above if lid.bulk_gravity else 0.0) / fraction + lid_volume / area / fraction
+    weight = bed.material.density * bed.gravity
+    bulk = float(volumes.sum()) * weight if lid.bulk_gravity else 0.0
+    values = fraction, float(depth), bulk, float(lid_volume * weight)
+    return dict(zip(FACTS, values))
