@@ -123,7 +123,7 @@ PRESETS = {
     "smoke": dict(
         width=24, breadth=5, height=22, depth=12, speed=0.4, dt_factor=2, lid_density=60, rest=1e-3, fields=False
     ),
-    "demo": dict(width=60, breadth=5, height=52, depth=30, speed=0.2, dt_factor=2, rest=1e-3),
+    "demo": dict(width=60, breadth=5, height=52, depth=30, lid_density=40, speed=0.2, dt_factor=2, rest=1e-3),
     "paper": {},
 }
 
@@ -153,18 +153,18 @@ def check_room(p, body):
     for key in ("width", "breadth"):
         if getattr(p, key) < least:
             raise UsageError(
-                f"{key}={getattr(p, key):g} d must be at least {least:.3g} d, or a grain would meet another through two sides of the"
-                " periodic box at once; raise it"
+                f"{key}={getattr(p, key):g} d must be at least {least:.3g} d, or a grain would meet another through two sides of"
+                " the periodic box at once; raise it"
             )
     if p.depth < high[2] + AWAY:
         raise UsageError(
-            f"depth={p.depth:g} d brings the body, which reaches {high[2]:.3g} d above its axis, within {AWAY:g} d of the surface or"
-            f" lid; raise depth to {high[2] + AWAY:.3g} or more"
+            f"depth={p.depth:g} d brings the body, which reaches {high[2]:.3g} d above its axis, within {AWAY:g} d of the"
+            f" surface or lid; raise depth to {high[2] + AWAY:.3g} or more"
         )
     if p.height - p.depth + low[2] < AWAY:
         raise UsageError(
-            f"height={p.height:g} d and depth={p.depth:g} d bring the body within {AWAY:g} d of the base; raise height to"
-            f" {p.depth - low[2] + AWAY:.3g} or more, or lower depth"
+            f"height={p.height:g} d and depth={p.depth:g} d bring the body within {AWAY:g} d of the base; raise height"
+            f" to {p.depth - low[2] + AWAY:.3g} or more, or lower depth"
         )
     if not body.endless and 2 * (high[1] - low[1]) > p.breadth:
         raise UsageError(
@@ -173,7 +173,8 @@ def check_room(p, body):
     free = p.width - (high[0] - low[0]) - AWAY
     if free <= 0:
         raise UsageError(
-            f"width={p.width:g} d is too small for a body {high[0] - low[0]:.3g} d long, which needs {p.width - free:.3g} d; raise it"
+            f"width={p.width:g} d is too small for a body {high[0] - low[0]:.3g} d long, which needs {p.width - free:.3g} d;"
+            " raise it"
         )
 
 
@@ -183,13 +184,13 @@ def check_travel(p, body):
     most, least = p.width - AWAY * size, forces.PAPERS_TRANSIENT * size + LEAST_WINDOW
     if p.way > most + 1e-9:
         raise UsageError(
-            f"travel={p.way:g} d ends less than {AWAY:g} D before the body's own wake, which comes back after width={p.width:g} d;"
-            f" lower travel to {most:.4g} or raise width"
+            f"travel={p.way:g} d ends less than {AWAY:g} D before the body's own wake, which comes back after"
+            f" width={p.width:g} d; lower travel to {most:.4g} or raise width"
         )
     if p.way < least:
         raise UsageError(
-            f"travel={p.way:g} d leaves too little behind the transient of {forces.PAPERS_TRANSIENT:g} D; give at least {least:.3g} d,"
-            f" and width at least {least + AWAY * size:.3g}"
+            f"travel={p.way:g} d leaves too little behind the transient of {forces.PAPERS_TRANSIENT:g} D; give at least"
+            f" {least:.3g} d, and width at least {least + AWAY * size:.3g}"
         )
 
 
@@ -204,8 +205,8 @@ def check_lid(p):
     most = grains.terms(D / 2, min(p.largest_overlap, sphere_bed.LARGEST_OVERLAP))["elastic"]
     if at_base > most:
         raise UsageError(
-            f"bed and lid press on a grain of the base by {at_base:.3g} N, but at largest_overlap={p.largest_overlap:g} R it bears"
-            f" {most:.3g} N; lower lid_density={p.lid_density:g} or height={p.height:g}, or raise largest_overlap"
+            f"bed and lid press on a grain of the base by {at_base:.3g} N, but at largest_overlap={p.largest_overlap:g} R it"
+            f" bears {most:.3g} N; lower lid_density={p.lid_density:g} or height={p.height:g}, or raise largest_overlap"
         )
 
 
@@ -242,6 +243,8 @@ def build(p, body, dt):
     gravity = (0, 0, -GRAVITY if p.bulk_gravity else 0)
     if p.frame == "cylinder":
         space.set_velocity([*made["grains"], *made["lid"], made["base"]], (-p.speed, 0, 0))
+    else:
+        space.set_velocity([made["body"]], (p.speed, 0, 0))
     space.run_on_grain_loop(
         material(p),
         gravity,
@@ -257,7 +260,8 @@ def build(p, body, dt):
         space.load_all(made["lid"], sphere_bed.weight_on_lid(bed, lid))
     ends = {name: [int(made[name][0]), int(made[name][-1]) + 1] if made[name] else [0, 0] for name in ("grains", "lid")}
     facts = sphere_bed.facts(bed, lid, found)
-    return dict(base=int(made["base"]), body=int(made["body"]), **ends, **facts, load_error=float(found["load_error"]))
+    told = dict(load_error=float(found["load_error"]), fraction=profile(p, made["grains"])[1].tolist())
+    return dict(base=int(made["base"]), body=int(made["body"]), **ends, **facts, **told)
 
 
 # Drive ----------------------------------------------------------------------------------------------------------------
@@ -322,8 +326,8 @@ def say_what_presses(seen):
     )
     if drag > seen.grip:
         print(
-            f"base and lid bear {seen.grip:.3g} N by friction, less than the drag of {drag:.3g} N that C_d = {USUAL_DRAG:g} means: the bed"
-            " may slip as a whole, and the drag come out too small; raise width",
+            f"base and lid bear {seen.grip:.3g} N by friction, less than the drag of {drag:.3g} N that C_d ="
+            f" {USUAL_DRAG:g} means: the bed may slip as a whole, and the drag come out too small; raise width",
             file=sys.stderr,
         )
 
@@ -371,7 +375,7 @@ def run(p, folder):
     record(p, folder, march, stage, seen)
 
 
-STAGE = ("base", "body", "grains", "lid", "load_error", *sphere_bed.FACTS)
+STAGE = ("base", "body", "grains", "lid", "load_error", "fraction", *sphere_bed.FACTS)
 
 
 def record(p, folder, march, stage, seen):
@@ -389,7 +393,6 @@ def record(p, folder, march, stage, seen):
     shown = [*scene.members(stage["base"]), *lids]
     frames = recording.Frames(folder, due, lambda: picture.taken(ids, shown, stage["body"]))
     settled = forces.PAPERS_TRANSIENT * seen.height / D
-    before = profile(p, ids)
 
     def sample(done):
         if done == 0:
@@ -418,7 +421,8 @@ def record(p, folder, march, stage, seen):
     if p.fields:
         fields.write_fields(folder, "around", around)
     folder.write("angular", angular, first_travel=summary["steady_from"])
-    folder.write("profile", dict(z=before[0], fraction=before[1], fraction_after=profile(p, ids)[1]))
+    z, after = profile(p, ids)
+    folder.write("profile", dict(z=z, fraction=np.array(stage["fraction"]), fraction_after=after))
     folder.summarize(**summary)
 
 

@@ -106,7 +106,7 @@ def steady_state(series, scene):
 
 
 def forces(kept, scene):
-    """Return {name: `Mean`} of drag (against the motion) and lift (up) [N], both without dimension, and of what the base feels."""
+    """Return {name: `Mean`} of drag (against the motion) and lift (up) [N], both without dimension, and the base's part."""
     drag, lift = -kept["fx"], kept["fz"]
     return dict(
         drag=block_mean(drag),

@@ -36,20 +36,6 @@ class DraggedBody:
         """Extent along y [m], the L of the drag coefficient."""
         return float(self.high[1] - self.low[1])
 
-    def distance_in(self, box, at):
-        """Return the function of points (n, 3) that gives their distance to the body at `at`, in its nearest image.
-
-        `box` holds the periods along x and y [m].
-        """
-        period = np.array([*box, np.inf])
-
-        def distance(points):
-            apart = np.atleast_2d(points) - at
-            apart[:, :2] -= period[:2] * np.round(apart[:, :2] / period[:2])
-            return np.asarray(self.surface.distance(apart))
-
-        return distance
-
 
 def of_shape(shape, diameter, breadth, d):
     """Return the `DraggedBody` of a shape: "cylinder" of that diameter, or what a file describes, in grain diameters.

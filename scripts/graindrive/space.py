@@ -50,7 +50,7 @@ def yade_loop(material, gravity, between=()):
     phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=material.friction)
     O.engines = [
         w.ForceResetter(),
-        w.InsertionSortCollider([w.Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()]),
+        w.InsertionSortCollider([w.Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()], allowBiggerThanPeriod=True),  # endless solids
         w.InteractionLoop([w.Ig2_Sphere_Sphere_ScGeom(), engines.Ig2_Solid_Sphere_ScGeom()], [phys], [law]),
         *between,
         w.NewtonIntegrator(damping=0, gravity=tuple(gravity)),
