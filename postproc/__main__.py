@@ -1,19 +1,20 @@
-"""Redraw the figure of run folders, film or export them: `python3 -m graindrive.postproc OUT … [frame=N] [export=vtk,xyz]`."""
+"""Redraw the figure of run folders, film or export them: `python3 -m graindrive.postproc OUT … [frame=N] [export=vtk,xyz]`.
+
+How a run is drawn its study says: one of this checkout, by the name in the run folder, or that of the file `study=FILE`.
+"""
 
 import sys
 
 from .. import exports
 from ..errors import UsageError
 from ..parameters import EXPORTS, known_formats
-from .magnus import figure as magnus
+from ..study import house, loaded
 from .reader import Run, RunError
-from .wiggle import animation
-from .wiggle import figure as wiggle
 
-FIGURES = {"wiggle": wiggle.draw, "magnus": magnus.draw}
-KEYS = ("frame=", "animation=", "export=")
-USAGE = f"""usage: python3 -m graindrive.postproc OUT … [frame=N] [animation=1] [export=FORMAT,…]
+KEYS = ("frame=", "animation=", "export=", "study=")
+USAGE = f"""usage: python3 -m graindrive.postproc OUT … [frame=N] [animation=1] [export=FORMAT,…] [study=FILE]
 frame: place in time of the picture, -1 is the last; animation: also film all frames, as animation.mp4
+study: file of the study that made the run, where it is none of this checkout's
 export: write frames for other programs, as {', '.join(EXPORTS)}; alone it draws no figure"""
 
 
@@ -27,12 +28,14 @@ def main(arguments):
         frame, filmed = (whole(key, options.get(key, usual)) for key, usual in (("frame", -1), ("animation", 0)))
         formats = known_formats(options.get("export", ""))
         for path in (a for a in arguments if not a.startswith(KEYS)):
-            if set(options) != {"export"}:
+            if set(options) - {"study"} != {"export"}:
+                draw = figure_of(path, options.get("study"))
                 print(f"{path}: drawing figure.png and figure.pdf")
-                figure_of(path)(path, frame)
+                draw(path, frame)
             if filmed:
+                film = film_of(path, options.get("study"))
                 print(f"{path}: filming animation.mp4")
-                film_of(path)
+                film(path)
             if formats:
                 print(f"{path}: writing {', '.join(exports.FILES[name] for name in formats)}")
                 exports.write(path, formats)
@@ -50,19 +53,36 @@ def whole(key, text):
         raise ValueError(f"frame and animation must be whole numbers, got {key}={text}") from None
 
 
-def figure_of(path):
+def figure_of(path, file=None):
     """Return the function that draws the figure of the study which made the run folder `path`."""
-    study = Run(path).study.split("_")[0]
-    if study not in FIGURES:
-        raise RunError(f"{path} holds a run of {study}, which has no figure yet; there are: {', '.join(FIGURES)}")
-    return FIGURES[study]
+    study = study_of(path, file)
+    if study.figure is None:
+        raise RunError(f"{path} holds a run of {study.name}, which has no figure yet")
+    return study.figure
 
 
-def film_of(path):
-    """Film the run in `path`; RunError for a study whose frames cannot be filmed."""
-    if figure_of(path) is not wiggle.draw:
-        raise RunError(f"{path} is no run of wiggle; only those can be filmed yet")
-    animation.film(path)
+def film_of(path, file=None):
+    """Return the function that films the run in `path`; RunError for a study whose frames cannot be filmed."""
+    study = study_of(path, file)
+    if study.film is None:
+        raise RunError(f"{path} holds a run of {study.name}, which cannot be filmed yet")
+    return study.film
+
+
+def study_of(path, file=None):
+    """Return the `Study` that made the run folder `path`: that of a `file`, or one of this checkout by name or family."""
+    run, known = Run(path), house()
+    name = run.study if run.study in known else run.family
+    if file is None and name not in known:
+        raise RunError(
+            f"{path} holds a run of {name}, which has no figure here; there are: {', '.join(known)}; give study=FILE"
+        )
+    try:
+        return loaded(file or known[name])
+    except OSError as error:
+        raise UsageError(f"study={file} cannot be read ({error.strerror})") from None
+    except ImportError as error:
+        raise RunError(f"{path} is drawn as its study says, which cannot be loaded: {error}") from None
 
 
 if __name__ == "__main__":

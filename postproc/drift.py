@@ -6,6 +6,7 @@ import numpy as np
 
 from .statistics import block_mean
 
+SKIPPED = 0.1  # of a run, before averages begin
 REST = 0.25  # [d] how far the mean of a cycle may stray from the final height of a body at rest
 LONG_REST = 8  # a rest counts if the body would else have gone so many times as far
 
@@ -26,7 +27,7 @@ class Drift:
     cycle_y: np.ndarray
 
 
-def drift(t, y, period, *, skip=0.1, rest=REST):
+def drift(t, y, period, *, skip=SKIPPED, rest=REST):
     """Return the `Drift` of a body that is shaken with `period`: mean of the cycle means' increments over the period.
 
     `t`, `y` (n,): time and position, t rising. A cycle counts if its middle lies behind the first part `skip` of the run.

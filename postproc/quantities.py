@@ -118,6 +118,35 @@ QUANTITIES = {
             lift_std="standard deviation of the lift in time",
         ),
         **of("d", steady_from="travel at which the averages begin", steady_travel="travel that the averages cover"),
+        **of(
+            "-",
+            drag_coefficient="lift study: C_d, drag over P_0 D L, D the body's height and L its breadth",
+            lift_over_buoyancy="lift study: lift, upwards, over the buoyancy",
+            depth_over_d="lift study: effective depth of the axis over the body's height D",
+            bulk_fraction="lift study: volume fraction of the bed at rest, away from base, surface and body",
+            inertial_number="lift study: (U_0/D) d sqrt(rho_g/P_0)",
+            peak_stress_over_pressure="lift study: largest normal stress by angle over P_0",
+            rear_stress_over_pressure="lift study: mean normal stress within 30 degrees of the rear over P_0",
+            tangential_share="lift study: sum of |tangential stress| over sum of normal stress",
+            local_pressure_lift="lift study: lift over buoyancy that Eq. 4 makes of the normal stress by angle",
+            drag_over_grip="lift study: drag over the friction that base and lid can bear; near 1 the bed slips as a whole",
+            load_error="lift study: by how much base and body miss the weight of the bed at rest, over the weight",
+        ),
+        **of(
+            "d",
+            body_height="lift study: the body's extent along z, its D",
+            effective_depth="lift study: of the axis, h~",
+        ),
+        **of("m", grain_diameter="lift study: d"),
+        **of("Pa", pressure="lift study: P_0 = rho g times the effective depth"),
+        **of("kg/m^3", bulk_density="lift study: rho, of the bed at rest"),
+        **of(
+            "force",
+            buoyancy="lift study: rho g times the body's volume",
+            weight="lift study: of grains and lid as gravity acts on them",
+            weight_on_base="lift study: mean force of the grains on the base, downwards",
+            drag_on_base="lift study: mean force of the grains on the base along the body's motion",
+        ),
     },
     "series": {
         **of("time", t="time; a row of Magnus is the mean over the block that ends then"),
@@ -129,6 +158,13 @@ QUANTITIES = {
         **of("d", travel="Magnus: way of the body since the start"),
         **of("-", phi="Magnus: area fraction between the walls, without the body"),
         **of("force", normal_x="Magnus: normal forces on the body, along x"),
+        **of(
+            "force",
+            fz="of the grains on the body, upwards",
+            base_fx="lift study: of the grains on the base",
+            base_fz="lift study: of the grains on the base",
+        ),
+        **of("length", lid_z="lift study: mean height of the lid's centres; 0 without a lid"),
         **of("torque", torque="Magnus: on the body, counter-clockwise"),
         **of(
             "force squared", fx_var="Magnus: variance of fx within the block", fy_var="Magnus: of fy within the block"
@@ -233,12 +269,21 @@ QUANTITIES = {
         **of("rad", theta="middles of the bins, angle from the velocity, counter-clockwise"),
         **of("force", normal="sum of the normal forces in the bin", tangential="of the tangential, counter-clockwise"),
         **of(
+            "Pa",
+            normal_stress="lift study: on the body, theta > 0 below its axis",
+            tangential_stress="lift study: on the body, > 0 towards larger theta",
+        ),
+        **of(
             "-",
             contacts_by_angle="number of contacts in the bin",
             slipping_by_angle="of those that slip",
             mobilised="F_T/(mu F_N) of the sums: 1 where all slips, 1/(1 - 2p) where of |F_N| the share p pulls as contacts"
             " part; nan: no force",
         ),
+    },
+    "profile": {
+        **of("length", z="middles of the slabs, heights above the base's centres"),
+        **of("-", fraction="volume fraction of the grains in a slab at rest", fraction_after="at the end of the run"),
     },
     "phase": {**of("T", phase="middle of the part of the cycle, t/T"), **of("velocity", vy="V_y in this part")},
     "table.csv": {

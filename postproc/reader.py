@@ -110,9 +110,10 @@ class Frame:
 class Run:
     """A run folder, complete, interrupted or still growing; raises RunError if `path` is none of these.
 
-    `parameters` and `provenance` are dicts of plain values, `series` maps names to 1D arrays of one length, `units` the
-    names of series and parameters to their units, `summary` is the content of summary.json. A folder that is still
-    being written shows its series and parameters, but no frames.
+    `study` is the name of the study, `family` that of the study of which it is a preset. `parameters` and `provenance` are
+    dicts of plain values, `constants` those of the study as numbers (empty in folders of older versions), `series` maps names
+    to 1D arrays of one length, `units` the names of series and parameters to their units, `summary` is the content of
+    summary.json. A folder that is still being written shows its series and parameters, but no frames.
     """
 
     def __init__(self, path):
@@ -125,8 +126,10 @@ class Run:
             about = self.path / ("run.h5" if merged else "about.h5")
             with h5py.File(about, "r") as file:  # in a growing folder parameters have a file of their own
                 self.study, self.state = str(file.attrs["study"]), str(file.attrs["state"])
+                self.family = str(file.attrs.get("family", self.study))
                 self.parameters = {name: plain(dataset[()]) for name, dataset in file["parameters"].items()}
                 self.units.update({name: dataset.attrs["unit"] for name, dataset in file["parameters"].items()})
+                self.constants = {name: plain(dataset[()]) for name, dataset in file.get("constants", {}).items()}
                 self.provenance = {name: plain(value) for name, value in file["provenance"].attrs.items()}
                 self.frame_names = sorted(file.get("frames", {}), key=int)
         except FileNotFoundError:

@@ -26,19 +26,24 @@ import os
 import sys
 from typing import ClassVar, Optional
 
-sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
+if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's own
+    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
 
 import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
 from graindrive import channel, engines, fields, headless, intruder, picture, progress, recording, scene  # noqa: E402
+from graindrive.block_means import block_means  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import quantity  # noqa: E402
+from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.magnus import figure  # noqa: E402
+from graindrive.postproc.magnus.campaign import REPORT  # noqa: E402
 from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
+from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
+from graindrive.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
@@ -56,10 +61,11 @@ FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 LEAST_WINDOW = 0.5  # d of travel to average, or there would be no error
 OVERLAP_KEYS = "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # what may help the guard
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
+RATES = ((0.352, 0.818), (313e6, 88e6))  # area fraction, particle-steps per second of one core (README)
 
 
 class MagnusParameters(intruder.BodyParameters):
-    """What the Magnus study knows; lengths in d = 0.02 m, all else SI."""
+    """What the Magnus study knows; lengths in d, all else SI."""
 
     unit_system: ClassVar[str] = quantities.SI
 
@@ -67,8 +73,8 @@ class MagnusParameters(intruder.BodyParameters):
     v0: float = quantity(0.25, "m/s", "speed of the body along x", gt=0, le=20)
     spin_ratio: float = quantity(5.0, "-", "Omega = omega_0 R/V0, positive counter-clockwise", ge=-1000, le=1000)
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    width: float = quantity(300.0, "d", "length of the channel in x, a whole number", gt=0)
-    height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0)
+    width: float = quantity(300.0, "d", "length of the channel in x, a whole number", gt=0, lever=Lever(300, "lower"))
+    height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0, lever=Lever(200, "lower"))
     travel: Optional[float] = quantity(None, "d", "how far the body goes; auto: the channel's length, the most", gt=0)
     settle_travel: float = quantity(30.0, "d", "travel that the averages leave out at least", ge=0)
     until_error: float = quantity(
@@ -113,6 +119,12 @@ PRESETS = {
     "demo": dict(width=150, height=100, dt_factor=2.5),
     "paper": {},
 }
+
+
+def time_step(p):
+    """Return the time step [s]."""
+    return TIME_STEP * p.dt_factor
+
 
 # Scene ----------------------------------------------------------------------------------------------------------------
 
@@ -253,7 +265,7 @@ def say_if_not_resolved(p, found):
 def check(p):
     """Refuse values that no run can be made of; return the body and the time step over the critical one."""
     check_room(p)
-    dt, grains = TIME_STEP * p.dt_factor, material(p.mu)
+    dt, grains = time_step(p), material(p.mu)
     check_load(p, grains)
     progress.require_feasible(p.way * D / (p.v0 * dt))
     body = intruder.of_size(p.shape, p.intruder_diameter * D, p.bead_diameter * D, DENSITY)
@@ -264,18 +276,18 @@ def check(p):
 
 def run(p, folder):
     """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
-    (body, ratio), dt, grains = check(p), TIME_STEP * p.dt_factor, material(p.mu)
+    (body, ratio), dt, grains, march = check(p), time_step(p), material(p.mu), YadeMarch()
     if folder.resumed:
-        stage = recording.load_stage(folder, ("walls", "grains", "body", "phi", "grain_area"))
+        stage = recording.load_stage(folder, march, ("walls", "grains", "body", "phi", "grain_area"))
     else:
         stage = build(p, grains, dt, body)
     folder.write("intruder", body.as_arrays("m"))
-    n_grains, also = stage["grains"][1] - stage["grains"][0], f" phi = {stage['phi']:.4f},"
-    recording.announce(folder, grains=n_grains, dt=dt, ratio=ratio, unit="s", also=also)
-    record(p, folder, stage)
+    march.grains, also = stage["grains"][1] - stage["grains"][0], f" phi = {stage['phi']:.4f},"
+    recording.announce(folder, grains=march.grains, dt=dt, ratio=ratio, unit="s", also=also)
+    record(p, folder, march, stage)
 
 
-def record(p, folder, stage):
+def record(p, folder, march, stage):
     """Run in blocks of a tenth of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
     from yade import O
 
@@ -294,10 +306,8 @@ def record(p, folder, stage):
     def sample(done):
         if done == 0:
             return False
-        t = done * O.dt
-        row = dict(
-            t=t, travel=p.v0 * t / D, x=state.pos[0], phi=area_fraction(p, stage), **recording.block_means(binner)
-        )
+        t = march.time
+        row = dict(t=t, travel=p.v0 * t / D, x=state.pos[0], phi=area_fraction(p, stage), **block_means(binner))
         folder.append(**{name: row[name] for name in UNITS})
         track.append(row)
         if p.fields:
@@ -308,13 +318,13 @@ def record(p, folder, stage):
     with recording.overlap_advice(OVERLAP_KEYS):
         recording.run_sampled(
             folder,
+            march,
             steps,
             block,
             sample,
             track=track,
             frames=frames,
             stage=stage,
-            grains=len(ids),
             label=f"driving {p.way:g} d",
         )
     found = steady()
@@ -325,10 +335,37 @@ def record(p, folder, stage):
     folder.summarize(v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, travel=p.way, **found.summary)
 
 
-def main(**defaults):
-    """Entry of this study and of presets, which give `defaults`."""
-    headless.main(run, MagnusParameters, PRESETS, check=check, defaults=defaults, figure=figure.draw)
+# Study ----------------------------------------------------------------------------------------------------------------
 
+
+def particle_steps(p):
+    """Return grains times steps of a run; the walls' frozen disks are not counted."""
+    return p.phi * p.width * p.height / (np.pi / 4) * p.way * D / (p.v0 * time_step(p))
+
+
+def rate(p):
+    """Return the particle-steps per second of one core: `RATES`, interpolated, and the same beyond."""
+    return float(np.interp(p.phi, *RATES))
+
+
+STUDY = Study(
+    name="magnus",
+    parameters=MagnusParameters,
+    presets=PRESETS,
+    observables=observables(
+        quantities.SI, "lift_to_drag", "lift_to_drag drag lift torque contacts phi slipping_share kappa front_share"
+    ),
+    cost=Cost(particle_steps, rate),
+    check=check,
+    run=run,
+    figure=figure.draw,
+    report=REPORT,
+    constants={
+        "d": Constant(D, "m", "mean diameter of the grains"),
+        "density": Constant(DENSITY, "kg/m^2", "mass of a grain over its area"),
+        "time_step": Constant(TIME_STEP, "s", "at dt_factor=1"),
+    },
+)
 
 if __name__ == "__main__":
-    main()
+    headless.main(STUDY)

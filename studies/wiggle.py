@@ -41,7 +41,8 @@ import os
 import sys
 from typing import ClassVar, Literal, Optional
 
-sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
+if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's own
+    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
 
 import house  # noqa: E402, F401
 
@@ -51,20 +52,23 @@ from graindrive import engines, fields, headless, intruder, lid, packing, pictur
 from graindrive import recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import quantity  # noqa: E402
+from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.drift import drift, phase_rates  # noqa: E402
-from graindrive.postproc.wiggle import figure  # noqa: E402
+from graindrive.postproc.drift import SKIPPED, drift, phase_rates  # noqa: E402
+from graindrive.postproc.wiggle import animation, figure  # noqa: E402
+from graindrive.postproc.wiggle.campaign import REPORT  # noqa: E402
+from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
+from graindrive.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
 TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
 SAMPLES_PER_PERIOD = 40
 SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
-SKIPPED = 0.1  # of the run, before averages begin
 PHASES = 20  # parts of the cycle
 FIELD_REACH, FIELD_SAMPLES = (15, 5), 100  # d from the body's centre, and at least from its sides; samples per period
 PAPERS_DEPTH = 105  # d, of the body's centre
+RATE = 90e6  # particle-steps per second of one core (README)
 # What may help where grains overlap too far: in the run, and while the bed settles.
 OVERLAP_KEYS = "lower dt_factor or amplitude, raise period or largest_overlap"
 BED_OVERLAP_KEYS = "lower dt_factor, height or lid_pressure"
@@ -85,14 +89,18 @@ class WiggleParameters(intruder.BodyParameters):
     period: float = quantity(4.0, "sqrt(d/g)", "T of the oscillation", gt=0)
     drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "which of the two is A sin(2 pi t/T)")
     mu: float = quantity(0.1, "-", "friction coefficient", ge=0)
-    width: float = quantity(300.0, "d", "period of the bed in x", gt=0)
-    height: float = quantity(195.0, "d", "height of the bed", gt=0)
-    depth: float = quantity(105.0, "d", "depth of the body's centre below the surface", gt=0)
-    time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0)
+    width: float = quantity(300.0, "d", "period of the bed in x", gt=0, lever=Lever(300, "lower"))
+    height: float = quantity(195.0, "d", "height of the bed", gt=0, lever=Lever(195, "lower"))
+    depth: float = quantity(
+        105.0, "d", "depth of the body's centre below the surface", gt=0, lever=Lever(PAPERS_DEPTH, "lower")
+    )
+    time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0, lever=Lever(1000, "lower"))
     frames: int = quantity(
         10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999
     )
-    rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0)
+    rest: float = quantity(
+        1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0, lever=Lever(1e-4, "higher")
+    )
     largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
     orientation_deg: float = quantity(
         0.0, "degrees", "the shape turned counter-clockwise about its centroid", ge=-360, le=360
@@ -104,7 +112,7 @@ class WiggleParameters(intruder.BodyParameters):
     lid_pressure: Optional[float] = quantity(
         None,
         "rho d g",
-        "weight over width of a lid; auto: 0.84 for every d by which depth is below the paper's 105",
+        f"weight over width of a lid; auto: {lid.BED_FRACTION:g} for every d by which depth is below the paper's {PAPERS_DEPTH}",
         ge=0,
     )
     lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
@@ -126,6 +134,12 @@ PRESETS = {
     "demo": dict(width=120, height=90, depth=50, time=60, period=4, dt_factor=5, rest=1e-3),
     "paper": {},
 }
+
+
+def time_step(p):
+    """Return the time step [sqrt(d/g)]."""
+    return TIME_STEP * p.dt_factor
+
 
 # Scene ----------------------------------------------------------------------------------------------------------------
 
@@ -250,7 +264,7 @@ def keep_rates(p, folder, t, y):
 
 def check(p):
     """Refuse values that no run can be made of; return the body and the time step over the critical one."""
-    body, dt, grains = body_of(p), TIME_STEP * p.dt_factor, material(p)
+    body, dt, grains = body_of(p), time_step(p), material(p)
     lightest = (
         min(p.intruder_mass, p.lid_load or np.inf) if p.lid == "rigid" else p.intruder_mass
     )  # the lid's, on each d
@@ -270,21 +284,22 @@ def centre(p):
 
 def run(p, folder):
     """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
-    (body, ratio), dt, grains = check(p), TIME_STEP * p.dt_factor, material(p)
+    (body, ratio), dt, grains, march = check(p), time_step(p), material(p), YadeMarch()
     print(lid.pressures_in_words(p.depth, PAPERS_DEPTH, p.lid_load, p.lid_pressure is None), file=sys.stderr)
     if folder.resumed:
-        stage = recording.load_stage(folder, ("base", "grains", "body", "lid"))
+        stage = recording.load_stage(folder, march, ("base", "grains", "body", "lid"))
     else:
         at = centre(p)
         stage = build(p, body, at, make_bed(p, body, at, dt, grains), dt, grains)
     folder.write("intruder", body.as_arrays("d"))
     folder.summarize(fall_height=body.fall_height, intruder_height=body.height)
     folder.summarize(lid_pressure=p.lid_load, pressure_at_body=lid.weight_of_bed(p.depth) + p.lid_load)
-    recording.announce(folder, grains=stage["grains"], dt=dt, ratio=ratio, unit="sqrt(d/g)")
-    record(p, folder, stage)
+    march.grains = stage["grains"]
+    recording.announce(folder, grains=march.grains, dt=dt, ratio=ratio, unit="sqrt(d/g)")
+    record(p, folder, march, stage)
 
 
-def record(p, folder, stage):
+def record(p, folder, march, stage):
     """Run in blocks, a fortieth of a period each; keep series, frames, checkpoints, then rise rates and fields."""
     from yade import O
 
@@ -297,7 +312,7 @@ def record(p, folder, stage):
     frames = recording.Frames(folder, due, lambda: picture.taken(ids, [*base, *stage["lid"]], stage["body"]))
 
     def sample(done):
-        t = done * O.dt
+        t = march.time
         if not state.pos[1] > 0:
             raise RuntimeError(f"step {done}: the body fell through the base, to y = {state.pos[1]:.3g} d")
         track.append(dict(t=t, y=state.pos[1]))
@@ -307,17 +322,40 @@ def record(p, folder, stage):
 
     with recording.overlap_advice(OVERLAP_KEYS):
         recording.run_sampled(
-            folder, steps, block, sample, track=track, frames=frames, stage=stage, grains=len(ids), label="shaking"
+            folder, march, steps, block, sample, track=track, frames=frames, stage=stage, label="shaking"
         )
     keep_rates(p, folder, **track.arrays())
     if p.fields:
         fields.write_fields(folder, "around", around, fields.GRAIN)
 
 
-def main(**defaults):
-    """Entry of this study and of its presets, which give `defaults`."""
-    headless.main(run, WiggleParameters, PRESETS, check=check, defaults=defaults, figure=figure.draw)
+# Study ----------------------------------------------------------------------------------------------------------------
 
+
+def particle_steps(p):
+    """Return grains times steps of a run, by the area fraction of a settled bed."""
+    return lid.BED_FRACTION / (np.pi / 4) * p.width * p.height * p.time / time_step(p)
+
+
+STUDY = Study(
+    name="wiggle",
+    parameters=WiggleParameters,
+    presets=PRESETS,
+    observables=observables(
+        quantities.GRAIN, "rise_rate", "rise_rate rise_until y_final lid_pressure pressure_at_body"
+    ),
+    cost=Cost(particle_steps, RATE),
+    check=check,
+    run=run,
+    figure=figure.draw,
+    film=animation.film,
+    report=REPORT,
+    constants={
+        "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
+        "papers_depth": Constant(PAPERS_DEPTH, "d", "of the body's centre in the paper"),
+        "bed_fraction": Constant(lid.BED_FRACTION, "-", "area fraction of a settled bed, which a lid stands for"),
+    },
+)
 
 if __name__ == "__main__":
-    main()
+    headless.main(STUDY)

@@ -3,8 +3,14 @@
 import os
 import sys
 
-sys.path[:0] = [os.path.dirname(os.path.abspath(sys.argv[0]))]  # `yade` runs scripts by exec: __file__ is YADE's own
+if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's own
+    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
 
 import wiggle  # noqa: E402
 
-wiggle.main(shape="wide")
+from graindrive import headless  # noqa: E402
+
+STUDY = wiggle.STUDY.preset("wiggle_wide", shape="wide")
+
+if __name__ == "__main__":
+    headless.main(STUDY)

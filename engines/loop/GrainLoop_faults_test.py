@@ -5,7 +5,7 @@ import math
 import disks
 import pytest
 
-from graindrive import grain_loop, progress, scene
+from graindrive import grain_loop, scene, yade_march
 from graindrive.engines import GrainLoop, OscillationDrive
 from yade import O, utils, wrapper
 
@@ -107,7 +107,7 @@ def test_a_grain_that_falls_past_the_base_ends_the_run_with_its_id_and_place(bed
     lost = bed[1][-1]  # beside the base
     O.bodies[lost].state.vel = (0, -50, 0)
     with pytest.raises(RuntimeError, match=f"grain {lost} at .* has left the box") as caught:
-        progress.advance(10_000)  # hears an engine that fails before anyone waits; O.run may not
+        yade_march.advance(10_000)  # hears an engine that fails before anyone waits; O.run may not
     assert f"step {O.iter}: " in str(caught.value)
     assert O.bodies[lost].state.pos[1] < -3.5  # three diameters below the base, and synced
 
@@ -117,7 +117,7 @@ def test_a_guard_that_trips_in_a_drive_shows_the_grains_too(bed):
     O.bodies[lost].state.vel = (0, -50, 0)
     O.engines = [OscillationDrive(body=bed[1][0], amplitude=0, period=1)] + O.engines
     with pytest.raises(RuntimeError, match="has left the box"):
-        progress.advance(10_000)  # hears an engine that fails before anyone waits; O.run may not
+        yade_march.advance(10_000)  # hears an engine that fails before anyone waits; O.run may not
     assert O.bodies[lost].state.pos[1] < -3.5
 
 

@@ -1,6 +1,5 @@
 """A campaign's folder: its plan, and its runs as one table."""
 
-import json
 import sys
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from ...campaign import plan_json
 from ..measured import birge_ratio
 from ..reader import Run, RunError
 from .runs import measurements
@@ -31,16 +31,9 @@ class Campaign:
     def of(cls, folder):
         """Open the campaign in `folder`."""
         try:
-            plan = json.loads((Path(folder) / "campaign.json").read_text())
-        except (FileNotFoundError, NotADirectoryError):
-            raise RunError(f"{folder} is not the folder of a campaign: it holds no campaign.json") from None
-        except (OSError, ValueError, RecursionError) as error:
-            raise RunError(f"{folder}/campaign.json cannot be read ({' '.join(str(error).split())})") from None
-        if not isinstance(plan, dict) or not {"name", "runs", "report"} <= set(plan):
-            raise RunError(
-                f"{folder}/campaign.json is no plan of a campaign; a call of scripts/campaign writes it anew"
-            )
-        return cls(Path(folder), plan)
+            return cls(Path(folder), plan_json.read(folder))
+        except plan_json.PlanError as error:
+            raise RunError(str(error)) from None
 
     @cached_property
     def table(self):

@@ -1,8 +1,7 @@
 """The report of a campaign as Markdown: what was run at what cost, then figures with captions, claims and verdicts."""
 
-import importlib
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from urllib.parse import quote
 
 from ...whole_files import write_text
@@ -12,52 +11,20 @@ from .folder import Campaign
 from .verdicts import tally
 
 
-@dataclass(frozen=True)
-class Section:
-    """One figure of a report: title, file below the campaign's `figures/` (without ending), caption, claims."""
-
-    title: str
-    figure: str
-    caption: str
-    claims: tuple
-
-
-@dataclass(frozen=True)
-class PlannedFigure:
-    """How a figure of a report is made: its file's `name`, the `sweep` that it shows, title, caption, and two functions.
-
-    `claims(campaign, rows)` tests the paper's claims on the sweep's rows, `draw(campaign, rows, claims)` returns the figure.
-    """
-
-    name: str
-    sweep: str
-    title: str
-    caption: str
-    claims: object
-    draw: object
-
-    def made(self, campaign):
-        """Draw the figure into the campaign's folder `figures`; return its `Section`."""
-        rows = campaign.sweep(self.sweep)
-        claims = tuple(self.claims(campaign, rows))
-        figures.save_as(
-            self.draw(campaign, rows, claims), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}"
-        )
-        return Section(self.title, self.name, self.caption, claims)
-
-
-def write_report(folder):
-    """Write `table.csv` and, where the campaign has a report, its figures and `report.md`; return the last written."""
+def write_report(folder, report=None):
+    """Write `table.csv` and, with a `Report` and runs, its figures and `report.md`; return the last written."""
     campaign = Campaign.of(folder)
-    report = campaign.plan["report"]
-    study = importlib.import_module(f"..{report}.campaign", __package__) if report else None
     table = campaign.folder / "table.csv"
     write_text(table, campaign.with_units(campaign.as_measured).to_csv(index=False))
-    campaign = replace(campaign, pooled=getattr(study, "POOLED", ()))
-    if not study or campaign.table.empty:
+    if report is None:
+        return table
+    campaign = replace(campaign, pooled=report.pooled)
+    if campaign.table.empty:
         return table
     (campaign.folder / "figures").mkdir(exist_ok=True)
-    write_text(campaign.folder / "report.md", as_markdown(campaign, study.TITLE, sections_of(campaign, study.FIGURES)))
+    write_text(
+        campaign.folder / "report.md", as_markdown(campaign, report.title, sections_of(campaign, report.figures))
+    )
     return campaign.folder / "report.md"
 
 

@@ -1,8 +1,6 @@
 """Report of a Magnus campaign: Figs. 2, 3, 5, 6, 7 and 8 of Kumar, Dhiman, Reddy, Phys. Rev. E 99, 012902 (2019)."""
 
-import numpy as np
-
-from ..campaign.report import PlannedFigure
+from ..campaign.planned import PlannedFigure, Report
 from . import plots
 from .claims import angle_claims, drag_claims, friction_claims, lift_claims, speed_claims
 from .wake import wake_claims
@@ -15,21 +13,6 @@ SWEEPS = {
     "fields": "one phi, spin_ratio 0, 1, 10, fields=1, three seeds or more",
     "friction": "several phi and mu, one large spin_ratio",
 }
-RATES = ((0.352, 0.818), (313e6, 88e6))  # area fraction, particle-steps per second of one core (README)
-TIME_STEP, DIAMETER = 2e-6, 0.02  # of the study [s], [m]
-
-
-def expected_core_seconds(parameters):
-    """Return what a run costs one core [s], packing aside, from its grains, its steps and the rates above.
-
-    Rates between are interpolated and stay the same beyond, and the walls of frozen disks are not counted.
-    """
-    phi, area = parameters["phi"], parameters["width"] * parameters["height"]
-    grains = phi * area / (np.pi / 4)
-    travel = parameters["width"] if parameters["travel"] is None else parameters["travel"]
-    steps = travel * DIAMETER / parameters["v0"] / (TIME_STEP * parameters["dt_factor"])
-    return float(grains * steps / np.interp(phi, *RATES))
-
 
 FIGURES = (
     PlannedFigure(
@@ -89,3 +72,5 @@ FIGURES = (
         plots.lift_against_friction,
     ),
 )
+
+REPORT = Report("magnus", TITLE, SWEEPS, FIGURES)

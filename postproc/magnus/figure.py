@@ -11,8 +11,6 @@ from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION,
 from ..reader import Run, RunError
 from .forces import drag_and_lift
 
-D = 0.02  # m, mean diameter of the grains
-
 
 def draw(path, frame=-1):
     """Draw figure.png and figure.pdf of the run folder `path` from its data alone."""
@@ -93,7 +91,17 @@ def fields_of(run):
     arrays = dict(found.arrays, velocity=found.arrays["velocity"] / v0)
     arrays["temperature"] = found.arrays["temperature"] / (v0**2 * (1 + spin_ratio**2))
     units = dict(found.units, x="d", y="d", velocity="$V_0$", temperature=r"$V_0^2(1 + \Omega^2)$")
-    return replace(found, x=found.x / D, y=found.y / D, arrays=arrays, units=units)
+    d = grain_diameter(run)
+    return replace(found, x=found.x / d, y=found.y / d, arrays=arrays, units=units)
+
+
+def grain_diameter(run):
+    """Return d [m] of a Magnus run; of folders that hold no constants by the body's way in m and in d."""
+    if "d" in run.constants:
+        return run.constants["d"]
+    if not len(run.series.get("travel", ())):
+        raise RunError(f"{run.path} holds neither the constant d nor a row of travel")
+    return float(run.parameters["v0"] * run.series["t"][-1] / run.series["travel"][-1])
 
 
 def draw_fields(figure, run, around):
@@ -113,9 +121,9 @@ def draw_fields(figure, run, around):
 def draw_body(axes, run):
     """The body about the origin: its outline, or a circle; of a turning body the circle that it sweeps."""
     body = run.group("intruder")
-    style = dict(facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3)
-    beads, radius = body["beads"] / D, float(np.atleast_1d(body["bead_radius"])[0]) / D
+    style, d = dict(facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3), grain_diameter(run)
+    beads, radius = body["beads"] / d, float(np.atleast_1d(body["bead_radius"])[0]) / d
     if "outline" in body and run.parameters["spin_ratio"] == 0:
-        axes.add_patch(Polygon(body["outline"] / D, **style))
+        axes.add_patch(Polygon(body["outline"] / d, **style))
     else:
         axes.add_patch(Circle((0, 0), np.hypot(*beads.T).max() + radius, **style))

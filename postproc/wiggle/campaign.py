@@ -1,8 +1,6 @@
 """Report of a wiggle campaign: Figs. 2, 5, 6, 8, 9 to 11 and 14 and Table 1 of Tripura et al., drives and scenes compared."""
 
-import numpy as np
-
-from ..campaign.report import PlannedFigure
+from ..campaign.planned import PlannedFigure, Report
 from . import claims, period_claims, plots
 
 TITLE = "Wiggle: bodies shaken sideways that rise or sink"
@@ -16,16 +14,6 @@ SWEEPS = {
     "mass": "a few shapes and periods, several intruder_mass",
     "scene": "scenes by width, height, depth, lid, lid_pressure and dt_factor, the largest of them the paper's",
 }
-POOLED = ("rise_rate",)
-RATE = 90e6  # particle-steps per second of one core (README)
-TIME_STEP = 1e-4  # of the study [sqrt(d/g)]
-GRAINS_PER_AREA = 0.84 / (np.pi / 4)  # of a settled bed [1/d^2]
-
-
-def expected_core_seconds(parameters):
-    """Return what a run costs one core [s], packing aside, from its grains and its steps."""
-    grains = GRAINS_PER_AREA * parameters["width"] * parameters["height"]
-    return float(grains * parameters["time"] / (TIME_STEP * parameters["dt_factor"]) / RATE)
 
 
 def no_claims(_campaign, _rows):
@@ -129,3 +117,5 @@ FIGURES = (
         plots.of_drives,
     ),
 )
+
+REPORT = Report("wiggle", TITLE, SWEEPS, FIGURES, pooled=("rise_rate",))

@@ -9,6 +9,7 @@ from . import engines, progress, scene
 from .channel_recipe import finished, insert, mean_area, radii_for
 from .errors import UsageError
 from .progress_line import Calming
+from .yade_march import YadeMarch
 
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
 DEEPEST_OVERLAP = 0.01  # [R] where closing walls count as jammed
@@ -39,9 +40,8 @@ def close(recipe):
     steps, speed = bring_together(recipe, walls, start)
     scene.set_motion(ids, -speed * y / ((start - recipe.d) / 2))
     print(f"closing walls on {len(ids)} grains from {start:.3g} to {recipe.height:.3g}, {steps} steps", file=sys.stderr)
-    progress.run_blocks(
-        steps, 1000, lambda done: stop_if_jammed(recipe, area, walls), grains=len(ids), label="closing walls"
-    )
+    march = YadeMarch(len(ids))
+    progress.run_blocks(march, steps, 1000, lambda done: stop_if_jammed(recipe, area, walls), label="closing walls")
     halt(walls)
     energy = rest(recipe, ids)
     stop_if_jammed(recipe, area, walls)
@@ -115,7 +115,7 @@ def rest(recipe, ids):
 
     scene.set_motion(ids, 0.0)
     label = "coming to rest"
-    progress.run_blocks(MOST_STOPS * block, block, stop_unless_at_rest, grains=len(ids), label=label, aim=aim)
+    progress.run_blocks(YadeMarch(len(ids)), MOST_STOPS * block, block, stop_unless_at_rest, label=label, aim=aim)
     if aim.energy < 1:
         return aim.energy
     raise RuntimeError(f"grains keep a kinetic energy of {aim.energy:.3g} times that at {recipe.rest_speed:g}")

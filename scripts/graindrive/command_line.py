@@ -15,20 +15,25 @@ HELP_WORDS = ("help", "--help", "-h", "-help")
 SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false": False, "no": False, "off": False}
 
 
-def parameters_or_exit(cls, arguments, presets, *, study, defaults=None, environment=None):
-    """Do what `StudyParameters.from_command_line` promises."""
+def parameters_or_exit(study, arguments, environment=None):
+    """Return the parameters of a `Study` for `key=value` arguments (without the script's name), or end the program.
+
+    What the user gives on the command line or in a row of YADE's batch table wins over the values of the scale, and these
+    over a preset study's own. `help` prints what the study knows and exits 0; a bad argument is one line on stderr, exit 2.
+    """
     if any(argument in HELP_WORDS for argument in arguments):
-        print(help_table(cls, presets, study=study, defaults=defaults))
+        print(help_text(study))
         sys.exit(0)
     try:
-        return parse(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
+        return parse(study, arguments, environment)
     except UsageError as error:
-        print(f"{study}: error: {error}", file=sys.stderr)
+        print(f"{study.name}: error: {error}", file=sys.stderr)
         sys.exit(UsageError.exit_code)
 
 
-def parse(cls, arguments, presets, *, study, defaults=None, environment=None):
-    """Return an instance of the parameter class `cls`; raises UsageError at the first argument that is wrong."""
+def parse(study, arguments, environment=None):
+    """Return the parameters of a `Study` for these arguments; raises UsageError at the first that is wrong."""
+    cls = study.parameters
     given = from_batch_row(cls, os.environ if environment is None else environment)
     for argument in arguments:
         key, text = split(cls, argument)
@@ -38,13 +43,17 @@ def parse(cls, arguments, presets, *, study, defaults=None, environment=None):
             )
         given[key] = text
     values = {key: convert(cls.__fields__[key], text) for key, text in given.items()}
-    base = dict(defaults or {})
+    base = dict(study.defaults)
     scale = values.get("scale", base.get("scale", cls.__fields__["scale"].default))
-    if scale not in presets:
-        raise UsageError(f"{argument_text('scale', scale)} is not known to {study}; allowed: {', '.join(presets)}")
-    merged = {**base, **presets[scale], **values, "scale": scale}
+    if scale not in study.presets:
+        raise UsageError(
+            f"{argument_text('scale', scale)} is not known to {study.name}; allowed: {', '.join(study.presets)}"
+        )
+    merged = {**base, **study.presets[scale], **values, "scale": scale}
     if not merged.get("out"):
-        merged["out"] = folder_name(study, scale, {k: v for k, v in given.items() if k not in ("scale", "out")}, cls)
+        merged["out"] = folder_name(
+            study.name, scale, {k: v for k, v in given.items() if k not in ("scale", "out")}, cls
+        )
     return build(cls, merged, given)
 
 
@@ -156,11 +165,19 @@ def folder_name(study, scale, given, cls):
     return name if len(name) <= 120 else f"{name[:107]}-{digest(kept)}"
 
 
-def help_table(cls, presets, *, study, defaults=None):
+def help_text(study):
+    """Return all that help says of a `Study`: its keys, then its levers, its observables and what it costs."""
+    parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
+    return "\n\n".join(
+        part for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study)] if part
+    )
+
+
+def help_table(study):
     """Return the table of keys: key, unit, default (and what a scale changes), meaning and what is allowed."""
+    cls, presets, defaults = study.parameters, study.presets, study.defaults
     rows = [("key", "unit", "default", "meaning")]
-    defaults = defaults or {}
-    runs = {scale: cls(**{**defaults, **values, "scale": scale}) for scale, values in presets.items()}
+    runs = {scale: study.usual(scale) for scale in presets}
 
     def default_of(key):
         usual = shown(defaults.get(key, cls.__fields__[key].default))
@@ -172,9 +189,37 @@ def help_table(cls, presets, *, study, defaults=None):
 
     for key, field in cls.__fields__.items():
         rows.append((key, cls.unit(key), default_of(key), f"{field.field_info.description} ({allowed(field)})"))
-    widths = [max(len(row[i]) for row in rows) for i in range(3)]
-    lines = ["  ".join([cell.ljust(width) for cell, width in zip(row, widths)] + [row[3]]) for row in rows]
-    return "\n".join([f"usage: yade {study}.py [key=value …]", ""] + lines)
+    return aligned(rows)
+
+
+def levers_in_words(study):
+    """Return the paragraph of help on the parameters that trade accuracy for speed."""
+    unit = study.parameters.unit
+    rows = [
+        (f"  {key}", f"{lever.reference:g} {unit(key)}".removesuffix(" -"), lever.cheaper)
+        for key, lever in study.levers.items()
+    ]
+    return aligned([("levers", "most accurate", "costs less when"), *rows]) if rows else ""
+
+
+def observables_in_words(study):
+    """Return the paragraph of help on what the study measures; a star marks the headline."""
+    rows = [(f"{'*' if o.headline else ' '} {o.name}", o.unit, o.meaning) for o in study.observables]
+    return aligned([("observables of summary.json (* the headline)", "unit", "meaning"), *rows]) if rows else ""
+
+
+def costs(study):
+    """Return the line of help that says what a run of each scale costs."""
+    if study.cost is None:
+        return ""
+    words = [f"{scale} {study.cost.in_words(study.usual(scale))}" for scale in study.presets]
+    return f"cost on one core, packing aside: {'; '.join(words)}"
+
+
+def aligned(rows):
+    """Return rows of cells as lines, all columns but the last padded to one width."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
+    return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths)), row[-1]]).rstrip() for row in rows)
 
 
 def taken_text(p, key):

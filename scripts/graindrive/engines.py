@@ -25,12 +25,11 @@ def find_yade():
 
 find_yade()
 
-from . import interaction_helpers, pausing, solid_errors  # noqa: E402
+from . import interaction_helpers, pausing, solid_errors, surface_algebra  # noqa: E402
 from ._engines import *  # noqa: E402, F401, F403
 from ._engines import prove_layout  # noqa: E402, F401
 
 interaction_helpers.install()
 pausing.watch()
 solid_errors.watch()
-
-from . import surfaces  # noqa: E402, F401  (gives Surface its operators)
+surface_algebra.install()

@@ -1,10 +1,7 @@
 """Manners of a study run as a command: no open port in batch mode, clear endings, true exit codes, no litter."""
 
 import atexit
-import builtins
-import contextlib
 import gc
-import io
 import os
 import shutil
 import signal
@@ -12,12 +9,11 @@ import socketserver
 import sys
 import threading
 import traceback
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 from . import output, run_data, signals
 from .cache import cache_folder
+from .command_line import parameters_or_exit
 from .errors import EngineError, Interrupted, UsageError, is_full, one_line
 from .run_folder import RunFolder
 from .run_place import AlreadyComplete
@@ -26,61 +22,19 @@ from .run_place import AlreadyComplete
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 
-@dataclass(frozen=True)
-class Declaration:
-    """What a study hands to `main`: name, class of parameters, presets by scale, a preset study's values, its check."""
+def main(study):
+    """Run a `Study` as a command and end the program as a command should.
 
-    name: str
-    parameters: type
-    presets: dict
-    defaults: dict
-    check: Callable
-
-
-_declared = None  # where `declaration_of` waits for a declaration; None: `main` runs the study
-
-
-def declaration_of(path):
-    """Return the `Declaration` of the study in file `path`, without running it; RuntimeError if it makes none."""
-    global _declared
-    arguments, search_path, _declared = sys.argv, list(sys.path), []
-    try:
-        sys.argv = [str(path)]
-        # By exec, as YADE's program does: YADE runs code of its own in whatever module is `__main__`.
-        space = {"__name__": "__main__", "__file__": str(path), "__builtins__": builtins}
-        with contextlib.redirect_stdout(io.StringIO()):  # YADE's greeting
-            exec(compile(Path(path).read_bytes(), str(path), "exec"), space)
-        if not _declared:
-            raise RuntimeError(f"{path} does not call headless.main, so it is not a study")
-        return _declared[0]
-    finally:
-        sys.argv, sys.path[:], _declared = arguments, search_path, None
-
-
-def nothing_to_check(_p):
-    """All values of a study's class of parameters go together."""
-
-
-def main(study, parameters, presets, *, check=nothing_to_check, defaults=None, figure=None, name=None):
-    """Run a study as a command and end the program as a command should.
-
-    `study(p, folder)` does the work with checked parameters `p` and an open `RunFolder`; `parameters` is the study's
-    class of parameters, `presets` maps scales to values, `defaults` are a preset study's own values; `check(p)` raises
-    UsageError for values that do not go together, which a campaign asks before it runs anything; `figure(path)`
-    draws from the finished data. In batch mode (`yade -x`, or no terminal) the program exits: 0, 2 after a UsageError,
-    128 + n after signal n, 1 after any other failure. In a terminal a good run returns to YADE's console.
+    In batch mode (`yade -x`, or no terminal) the program exits: 0, 2 after a UsageError, 128 + n after signal n, 1 after any
+    other failure. In a terminal a good run returns to YADE's console.
     """
-    name = name or Path(sys.argv[0]).stem
-    if _declared is not None:
-        _declared.append(Declaration(name, parameters, presets, dict(defaults or {}), check))
-        return
     output.forgive()
     leave_nothing_behind()
-    p = parameters.from_command_line(sys.argv[1:], presets, study=name, defaults=defaults)
+    p = parameters_or_exit(study, sys.argv[1:])
     batch = is_batch()
     if batch:
         close_servers()
-    code = guarded(lambda: carry_out(study, p, name, figure), name)
+    code = guarded(lambda: carry_out(study, p), study.name)
     if batch or code:
         end(code)
 
@@ -96,11 +50,13 @@ def end(code):
     sys.exit(code)
 
 
-def carry_out(study, p, name, figure):
-    """Run the study in its run folder, with stop signals handled."""
-    with signals.handled(), RunFolder(p, study=name, figure=figure) as folder:
-        study(p, folder)
-    print(f"{name}: done, see {folder.out}", file=sys.stderr)
+def carry_out(study, p):
+    """Run the `Study` in its run folder, with stop signals handled."""
+    units = {observable.name: observable.unit for observable in study.observables}
+    kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
+    with signals.handled(), RunFolder(p, study=study.name, **kept) as folder:
+        study.run(p, folder)
+    print(f"{study.name}: done, see {folder.out}", file=sys.stderr)
 
 
 def guarded(action, name):

@@ -54,3 +54,50 @@ class HertzHistoryMaterial:
             normalDamping=self.normal_damping,
             tangentialDamping=self.tangential_damping,
         )
+
+
+@dataclass(frozen=True)
+class HertzRestitutionSpheres:
+    """Spheres under Hertz's law with a damping that gives one restitution (Table I of Guillard, Forterre, Pouliquen 2014).
+
+    young E [Pa]; poisson nu, restitution e, friction mu [-]; density [kg/m^3]. Spheres of diameter d and mass m have
+    k_n* = E sqrt(d)/(3 (1 - nu^2)) and gamma_n* = -sqrt(5/2) beta sqrt(m k_n*), beta = ln e/sqrt(ln^2 e + pi^2).
+    """
+
+    young: float
+    poisson: float
+    restitution: float
+    friction: float
+    density: float
+
+    LAW = "hertzRestitution"
+
+    def given(self):
+        """Return what the law is given, under the names of GrainLoop and of the Law2_ functor."""
+        return dict(young=self.young, poisson=self.poisson, restitution=self.restitution)
+
+    def mass(self, radius):
+        """Return the mass [kg] of a sphere of `radius` [m]."""
+        return self.density * 4 / 3 * math.pi * radius**3
+
+    def terms(self, radius, overlap):
+        """Return the law's terms for two spheres of `radius` [m] that overlap by `overlap` of it, see `engines.terms_of_law`."""
+        return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius / 2, self.mass(radius) / 2)
+
+    def terms_on_a_plane(self, radius, overlap):
+        """Return the same for a sphere on a held plane, or on a held solid that counts as one."""
+        return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius, self.mass(radius))
+
+    def critical_time_step(self, smallest_radius, overlap):
+        """Return the largest stable step [s] of two smallest spheres that overlap by `overlap` of their radius.
+
+        Along the normal they move with m_eff; two spheres (I = 2/5 m R^2) slide past each other with 2/7 of it. A sphere on
+        a plane has a stiffness sqrt(2) times as large for twice the mass, and bears more.
+        """
+        mass = self.mass(smallest_radius) / 2
+        at = self.terms(smallest_radius, overlap)
+        normal = engines.critical_step(at["stiffness"], at["dashpot"], mass)
+        if self.friction == 0:
+            return normal
+        sliding = engines.critical_step(at["tangential_stiffness"], at["tangential_dashpot"], mass * 2 / 7)
+        return min(normal, sliding)

@@ -9,6 +9,7 @@ from . import cache, cover, engines, lid, progress, scene
 from .errors import UsageError
 from .material import HertzHistoryMaterial
 from .progress_line import Calming
+from .yade_march import YadeMarch
 
 RECIPE = 4  # raise it when a bed of the same parameters comes out different
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
@@ -221,7 +222,7 @@ def run_until_at_rest(recipe, ids, density, fall_time):
         "m g d per grain",
         least,
     )
-    progress.run_blocks(round(50 * least), block, aim.reached, grains=len(ids), label="settling", aim=aim)
+    progress.run_blocks(YadeMarch(len(ids)), round(50 * least), block, aim.reached, label="settling", aim=aim)
     if not aim.energy < recipe.rest:
         raise RuntimeError(
             f"the bed keeps a kinetic energy of {aim.energy:.2g} m g d per grain, over {recipe.rest:.2g};"

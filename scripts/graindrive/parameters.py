@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from pydantic import BaseModel, Field, validator
@@ -11,16 +12,31 @@ LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from what double precision can hold
 
 
-def quantity(default, unit, meaning, *, identity=True, **limits):
+@dataclass(frozen=True)
+class Lever:
+    """A number among the parameters that trades accuracy for speed.
+
+    At `reference` a run is as accurate as the study goes; it costs less in the direction `cheaper`, "higher" or "lower".
+    """
+
+    reference: float
+    cheaper: str
+
+    def __post_init__(self):
+        if self.cheaper not in ("higher", "lower"):
+            raise ValueError(f"cheaper must be 'higher' or 'lower', got {self.cheaper!r}")
+
+
+def quantity(default, unit, meaning, *, identity=True, lever=None, **limits):
     """Declare one parameter of a study.
 
     `unit` is text ("d", "sqrt(d/g)", "-" for a pure number), `meaning` one line for the help table, `limits` any of
     gt, ge, lt, le. `identity=False` marks what changes how a run is made but not its result: such keys
-    take no part in comparing runs.
+    take no part in comparing runs. `lever` is the parameter's `Lever`, if it is one.
     """
     if set(limits) - set(LIMITS):
         raise TypeError(f"limits are {', '.join(LIMITS)}, got {', '.join(limits)}")
-    return Field(default, description=meaning, unit=unit, identity=identity, **limits)
+    return Field(default, description=meaning, unit=unit, identity=identity, lever=lever, **limits)
 
 
 class StudyParameters(BaseModel):
@@ -39,7 +55,7 @@ class StudyParameters(BaseModel):
     seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
     loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own as the reference")
     precision: Literal["double", "single"] = quantity("double", "-", "number type of contact forces in GrainLoop")
-    dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0)
+    dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0, lever=Lever(1.0, "higher"))
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
     checkpoint_seconds: float = quantity(
@@ -81,6 +97,12 @@ class StudyParameters(BaseModel):
         """Return the unit of parameter `key` as text."""
         return cls.__fields__[key].field_info.extra.get("unit", "-")
 
+    @classmethod
+    def levers(cls):
+        """Return {key: `Lever`} of the parameters that trade accuracy for speed."""
+        found = {key: field.field_info.extra.get("lever") for key, field in cls.__fields__.items()}
+        return {key: lever for key, lever in found.items() if lever is not None}
+
     def auto_values(self):
         """Return {key: the value that is taken} of the keys that are `auto`; a study that has such keys overrides this."""
         return {}
@@ -103,18 +125,6 @@ class StudyParameters(BaseModel):
     def digest(self):
         """Return 12 hexadecimal characters that stand for `identity()`."""
         return digest(self.identity())
-
-    @classmethod
-    def from_command_line(cls, arguments, presets, *, study, defaults=None, environment=None):
-        """Return the parameters for `key=value` arguments (without the script's name), or end the program.
-
-        `presets` maps each scale to the values that it changes, `defaults` holds a preset study's own; what the user
-        gives on the command line or in a row of YADE's batch table wins over both. `help` prints the table of keys and
-        exits 0; a bad argument is one line on stderr and exit 2.
-        """
-        from .command_line import parameters_or_exit
-
-        return parameters_or_exit(cls, arguments, presets, study=study, defaults=defaults, environment=environment)
 
 
 def sized(number):

@@ -51,11 +51,13 @@ class Calming:
 class ProgressLine:
     """A bar on a terminal, one line per 10 % elsewhere, on stderr; both show the rate and the time left.
 
-    With an `aim`, a `Calming`, the per cent are its own and its words stand in place of the time left, which nobody knows.
+    `size` is the work of one step in `unit`; of 0 steps alone are counted. With an `aim`, a `Calming`, the per cent are its
+    own and its words stand in place of the time left, which nobody knows.
     """
 
-    def __init__(self, total_steps, grains, label, aim=None):
-        self.total, self.grains, self.label, self.aim = total_steps, grains, label, aim
+    def __init__(self, total_steps, size, label, aim=None, unit="particle-steps"):
+        self.total, self.size, self.label, self.aim = total_steps, size, label, aim
+        self.unit = unit if size else "steps"
         self.done, self.tenths, self.bar, self.start = 0, 0, None, time.perf_counter()
         self.told = self.start
 
@@ -63,12 +65,11 @@ class ProgressLine:
         if sys.stderr.isatty():
             from tqdm import tqdm
 
-            unit = " particle-steps" if self.grains else " steps"
             words = "{rate_fmt}, {remaining} left" if self.aim is None else "{postfix}, {elapsed} so far"
             self.bar = tqdm(
-                total=self.total * (self.grains or 1) if self.aim is None else 1.0,
+                total=self.total * (self.size or 1) if self.aim is None else 1.0,
                 desc=self.label,
-                unit=unit,
+                unit=f" {self.unit}",
                 unit_scale=True,
                 bar_format="{desc} {percentage:3.0f} % |{bar}| " + words,
             )
@@ -79,7 +80,7 @@ class ProgressLine:
         if self.aim is not None:
             self.show_aim(done)
         elif self.bar is not None:
-            self.bar.update((done - self.done) * (self.grains or 1))
+            self.bar.update((done - self.done) * (self.size or 1))
         elif self.total and 10 * done // self.total > self.tenths:
             self.tell(10 * done // self.total, self.rate_and_time_left(done))
         self.done = done
@@ -102,7 +103,7 @@ class ProgressLine:
     def rate(self, done):
         """Return in words the mean rate so far."""
         rate = done / self.elapsed()
-        return f"{rate * self.grains / 1e6:.3g} M particle-steps/s" if self.grains else f"{rate:.3g} steps/s"
+        return f"{rate * self.size / 1e6:.3g} M {self.unit}/s" if self.size else f"{rate:.3g} steps/s"
 
     def rate_and_time_left(self, done):
         """Return in words the mean rate so far and the time left at that rate."""

@@ -1,14 +1,12 @@
-"""Runs a scene in blocks, samples it after each, and keeps checkpoints: a run goes on as if never interrupted (`scene.load`)."""
+"""Lets a `March` go on in blocks, samples it after each, and keeps checkpoints: a run goes on as if never interrupted."""
 
 import contextlib
 import sys
 
 import numpy as np
 
-from . import progress, scene
+from . import progress
 from .errors import EngineError, UsageError, one_line
-
-SCENE = "scene.checkpoint"
 
 
 class Track:
@@ -40,38 +38,39 @@ class Track:
 
 
 class Frames:
-    """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes those that it lacks."""
+    """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes those that it lacks.
+
+    `picture()` returns what `RunFolder.frame` takes behind the time.
+    """
 
     def __init__(self, folder, steps, picture):
         self.folder, self.picture, self.last = folder, picture, None
         self.due = sorted({int(step) for step in steps})[folder.frames :]
 
-    def take_if_due(self, done):
-        """Take a picture if one is due by the step `done`."""
+    def take_if_due(self, done, t):
+        """Take a picture if one is due by the step `done`, at the time `t`."""
         if self.due and done >= self.due[0]:
-            self.take(done)
+            self.take(done, t)
 
-    def take_what_is_left(self, done):
-        """Take one picture more if the run ended at `done`, before all were due."""
+    def take_what_is_left(self, done, t):
+        """Take one picture more if the run ended at `done`, at the time `t`, before all were due."""
         if self.due and done != self.last:
-            self.take(done)
+            self.take(done, t)
 
-    def take(self, done):
-        """Take the next picture, of the time that `done` steps make."""
-        from yade import O
-
+    def take(self, done, t):
+        """Take the next picture, of the time `t` that `done` steps make."""
         self.last = done
         self.due.pop(0)
-        self.folder.frame(done * O.dt, *self.picture())
+        self.folder.frame(t, *self.picture())
 
 
-def load_stage(folder, names):
-    """Put the scene from which a resumed run goes on into YADE; return the facts of its `stage` by these names.
+def load_stage(folder, march, names):
+    """Have a `March` take up where the resumed run of `folder` goes on; return the facts of its `stage` by these names.
 
-    UsageError for a scene that this version cannot go on from; the remains stay as they are.
+    UsageError for a checkpoint that this version cannot go on from; the remains stay as they are.
     """
     try:
-        scene.load(folder.resumed["folder"] / SCENE)
+        march.load(folder.resumed["folder"])
     except RuntimeError as error:
         remains = folder.resumed["remains"]
         raise UsageError(
@@ -98,73 +97,50 @@ def announce(folder, *, grains, dt, ratio, unit, also=""):
     print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
-def run_sampled(folder, steps, block, sample, *, track, frames, stage, grains, label):
-    """Run `steps` steps from the start of the run, calling `sample(done)` after every `block`; return the steps done.
+def run_sampled(folder, march, steps, block, sample, *, track, label, frames=None, stage=None):
+    """Have a `March` go `steps` steps from the run's start, calling `sample(done)` after every `block`; return the steps done.
 
-    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too. `frames` are taken at their own
-    steps, inside of blocks too, and once more at the end if that came early. A checkpoint of the scene, the `track` and the
-    facts `stage` is written every `checkpoint_seconds`. Steps and rate go to the folder's provenance.
+    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too; of one that was, the march stands
+    where its checkpoint does (`load_stage`). `frames` are taken at their own steps, inside of blocks too, and once more at
+    the end if that came early. A checkpoint of the march, the `track` and the facts `stage` is written every
+    `checkpoint_seconds`. Steps and rate go to the folder's provenance.
     """
-    first = folder.resumed["step"] if folder.resumed else 0
+    first, stage = folder.resumed["step"] if folder.resumed else 0, stage or {}
+    frames = frames or Frames(folder, (), None)
     checkpoints = progress.Every(folder.parameters.checkpoint_seconds)
 
     def save(place):
-        scene.save(place / SCENE)
+        march.save(place)
         track.save(place)
 
     def after_block(done):
         ended = sample(first + done)
-        frames.take_if_due(first + done)
+        frames.take_if_due(first + done, march.time)
         if checkpoints.due():
             folder.checkpoint(save, first + done, **stage)
         return ended
 
     if not folder.resumed:
         sample(0)
-        frames.take_if_due(0)
-    pauses = [due - first for due in frames.due]
+        frames.take_if_due(0, march.time)
     timing = progress.run_blocks(
+        march,
         steps - first,
         block,
         after_block,
-        grains=grains,
         label=label,
-        pauses=pauses,
-        on_pause=lambda done: frames.take_if_due(first + done),
+        pauses=[due - first for due in frames.due],
+        on_pause=lambda done: frames.take_if_due(first + done, march.time),
     )
-    frames.take_what_is_left(first + timing.steps)
-    folder.note(steps=first + timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    frames.take_what_is_left(first + timing.steps, march.time)
+    note_rate(folder, march, first + timing.steps, timing.work_per_second)
     return first + timing.steps
 
 
-def block_means(binner):
-    """Return the means of a ContactForceBinner on a body among disks since it was last cleared, as a dict, and clear it.
-
-    fx, fy, normal_x (of the normal forces alone) [N], torque [N m], contacts, slipping; variances of the instantaneous
-    values within the block, fx_var, fy_var [N^2], contacts_var; by angle, shape (bins,): normal, tangential [N],
-    contacts_by_angle, slipping_by_angle. UsageError on a GrainLoop of spheres, whose forces have a third component.
-    """
-    loop = scene.fast_loop()
-    if loop and loop.dimensions == 3:
-        raise UsageError(
-            "block_means records forces in the plane, and this scene is one of spheres; read the binner's own force,"
-            " torque, ... (x, y, z)"
-        )
-    force, variance = binner.force, binner.forceVariance
-    row = dict(
-        fx=force[0],
-        fy=force[1],
-        normal_x=binner.normalForceOnBody[0],
-        torque=binner.torque[2],
-        contacts=binner.contactNumber,
-        slipping=binner.slippingNumber,
-        fx_var=variance[0],
-        fy_var=variance[1],
-        contacts_var=binner.contactNumberVariance,
-        normal=binner.normalForce,
-        tangential=binner.tangentialForce,
-        contacts_by_angle=binner.contacts,
-        slipping_by_angle=binner.slippingContacts,
-    )
-    binner.clear()
-    return row
+def note_rate(folder, march, steps, rate):
+    """Note in the folder how many steps were made and what work per second; of grains under the name that it has there."""
+    folder.note(steps=steps)
+    if march.unit == "particle-steps":
+        folder.note(particle_steps_per_second=rate)
+    else:
+        folder.note(work_per_second=rate, work_unit=march.unit)

@@ -25,11 +25,14 @@ class RunFolder:
     `run.h5` and `summary.json`, calls `figure(path)`, exports what is asked for and renames the folder to `out`.
     A UsageError removes it; a
     signal keeps what was measured as `NAME.interrupted`, any other failure as `NAME.failed`. Entering raises UsageError
-    if `out` cannot be used, AlreadyComplete if the same run is there.
+    if `out` cannot be used, AlreadyComplete if the same run is there. `study` is the study's name, `family` that of the
+    study of which it is a preset, `constants` its {name: Constant}, `units` {quantity: unit} of what it summarizes and
+    `postproc.quantities` does not know.
     """
 
-    def __init__(self, parameters, *, study, figure=None):
+    def __init__(self, parameters, *, study, figure=None, constants=None, units=None, family=None):
         self.parameters, self.study, self.figure = parameters, study, figure
+        self.constants, self.own_units, self.family = constants or {}, units or {}, family or study
         self.out = run_place.place_of(parameters.out)
         self.path = run_place.hidden(self.out, "part")
         self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
@@ -192,7 +195,7 @@ class RunFolder:
         """Finish all files and give the folder its right name; from the moment that `run.h5` is whole nothing can be lost."""
         self.provenance["wall_s"] = self.wall_s
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
-        own = {name: unit for name, unit in self.units.items() if unit is not None}
+        own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
         whole_files.write_text(self.path / "summary.json", json.dumps(told, indent=2, allow_nan=False) + "\n")
         self.finish_data("complete")
@@ -231,7 +234,7 @@ class RunFolder:
 
     def describe(self, file, state):
         """Write parameters with units, and provenance, into an open HDF5 file."""
-        file.attrs.update(state=state, study=self.study, digest=self.parameters.digest())
+        file.attrs.update(state=state, study=self.study, family=self.family, digest=self.parameters.digest())
         if self.resumed:
             file.attrs[checkpoint.SOURCE] = self.resumed["remains"].name
         for key, value in self.parameters.taken().items():
@@ -239,6 +242,9 @@ class RunFolder:
             dataset.attrs["auto"] = getattr(self.parameters, key) is None
             dataset.attrs["unit"] = self.parameters.unit(key)
             dataset.attrs["meaning"] = self.parameters.__fields__[key].field_info.description or ""
+        for name, constant in self.constants.items():
+            dataset = file.require_group("constants").create_dataset(name, data=constant.value)
+            dataset.attrs.update(unit=constant.unit, meaning=constant.meaning)
         file.require_group("provenance").attrs.update(self.provenance)
 
     def close(self):

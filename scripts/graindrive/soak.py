@@ -23,6 +23,7 @@ import numpy as np
 from . import engines, grain_loop, progress, scene, signals, whole_files
 from .errors import Interrupted, UsageError
 from .material import HertzHistoryMaterial
+from .yade_march import YadeMarch
 
 BOUND = 1e-6  # of the energy turned over
 TIME_STEP = 1e-3  # [s]
@@ -155,7 +156,7 @@ def soak(out, steps, block, on_report=None):
                 f"step {O.iter}: the ledger's residual is {rows[-1][1]:.3g} of the turnover, over {BOUND:g}"
             )
 
-    timing = progress.run_blocks(max(0, steps - first), block, report, grains=len(loop.ids), label="soaking")
+    timing = progress.run_blocks(YadeMarch(len(loop.ids)), max(0, steps - first), block, report, label="soaking")
     if not rows:
         raise UsageError(f"steps={steps} are fewer than one report of {block}; ask for more, or shorter reports")
     return dict(summary_of(rows, O.iter, len(loop.ids), timing.seconds), steps_before=first)

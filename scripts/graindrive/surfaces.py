@@ -16,24 +16,25 @@ import math
 import numpy as np
 
 from .engines import Outline, Solid, Surface, sampled_recipe, surface_kinds
+from .surface_algebra import number, vector, words
 
 __all__ = ["Surface", "ball", "body", "cylinder", "half_space", "sampled", "surface_kinds", "swept_outline"]
 
 
 def half_space(point, normal):
     """Everything behind the plane through `point` [m] whose normal, of any length, leads out of the solid."""
-    return Surface(_words("half_space", _vector("point", point), _vector("normal", normal)))
+    return Surface(words("half_space", vector("point", point), vector("normal", normal)))
 
 
 def ball(centre, radius):
     """A ball about `centre` [m] of a radius [m] > 0."""
-    return Surface(_words("ball", _vector("centre", centre), _number("radius", radius)))
+    return Surface(words("ball", vector("centre", centre), number("radius", radius)))
 
 
 def cylinder(centre, axis, radius, length=math.inf):
     """A round cylinder about `centre` [m] along `axis`, of a radius and a length [m] > 0; without ends by default."""
-    numbers = _number("radius", radius), _number("length", length)
-    return Surface(_words("cylinder", _vector("centre", centre), _vector("axis", axis), *numbers))
+    numbers = number("radius", radius), number("length", length)
+    return Surface(words("cylinder", vector("centre", centre), vector("axis", axis), *numbers))
 
 
 def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
@@ -44,7 +45,7 @@ def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
     Raises ValueError for an outline as Outline does, for one end without the other, and unless low < high.
     """
     outline = outline if isinstance(outline, Outline) else Outline(outline)
-    low, high = _number("low", low), _number("high", high)
+    low, high = number("low", low), number("high", high)
     if math.isinf(low) != math.isinf(high):
         raise ValueError(f"low and high must both be finite or both be left out, got {low} and {high}; give both ends")
     if not low < high:
@@ -55,8 +56,8 @@ def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
     else:
         axes = (0, 0, middle), (1, 0, 0), (0, 1, 0)
         vertices = outline.vertices
-        prism = Surface(_words("swept_outline", *axes, high - low, len(vertices), *vertices))
-    axis = _vector("axis", axis)
+        prism = Surface(words("swept_outline", *axes, high - low, len(vertices), *vertices))
+    axis = vector("axis", axis)
     return prism if np.array_equal(axis, (0, 0, 1)) else _turned_from_z(prism, axis)
 
 
@@ -74,7 +75,7 @@ def sampled(function, low, high, spacing):
     for a function that is no distance: whose slope near the surface is not 1 within 0.1 at half of the nodes, or
     above 1.01 anywhere.
     """
-    low, high, spacing = _vector("low", low), _vector("high", high), _number("spacing", spacing)
+    low, high, spacing = vector("low", low), vector("high", high), number("spacing", spacing)
     if not (0 < spacing < math.inf):
         raise ValueError(f"spacing must be positive and finite, got {spacing}; give a length > 0")
     sides = high - low
@@ -106,7 +107,7 @@ def body(
     """
     from yade import Body, O, Quaternion
 
-    inertia = (0, 0, 0) if inertia is None else tuple(_vector("inertia", inertia))
+    inertia = (0, 0, 0) if inertia is None else tuple(vector("inertia", inertia))
     if not held and not (0 < mass < math.inf and 0 < min(inertia) <= max(inertia) < math.inf):
         raise ValueError(
             f"a free solid needs mass and inertia > 0 and finite, got {mass} and {inertia}; give them or held=True"
@@ -115,7 +116,7 @@ def body(
     made.shape = Solid(surface)
     made.shape.color = color
     made.mat = material if not isinstance(material, (int, str)) else O.materials[material]
-    made.state.pos = made.state.refPos = tuple(_vector("position", position))
+    made.state.pos = made.state.refPos = tuple(vector("position", position))
     if orientation is not None:
         made.state.ori = made.state.refOri = Quaternion(orientation)
     made.state.mass = mass
@@ -123,53 +124,6 @@ def body(
     made.state.blockedDOFs = "xyzXYZ" if held else ""
     made.aspherical = not held and len(set(inertia)) > 1
     return made
-
-
-def _or(a, b):
-    return _joined("union", a, b)
-
-
-def _and(a, b):
-    return _joined("intersection", a, b)
-
-
-def _not(a):
-    first, _, rest = a.recipe.partition(" ")
-    return Surface(rest if first == "complement" else "complement " + a.recipe)
-
-
-def _minus(a, b):
-    return _and(a, _not(b)) if isinstance(b, Surface) else NotImplemented
-
-
-def _placed(self, at=(0, 0, 0), axis=(0, 0, 1), angle=0.0):
-    """The solid turned about `axis` through the origin by `angle` [rad], then shifted by `at` [m]."""
-    axis, angle = _vector("axis", axis), _number("angle", angle)
-    length = np.linalg.norm(axis)
-    if not (0 < length < math.inf and math.isfinite(angle)):
-        raise ValueError(
-            f"axis and angle must be finite and the axis not zero, got {axis.tolist()} and {angle}; correct them"
-        )
-    turn = math.cos(angle / 2), *(math.sin(angle / 2) / length * axis)
-    return Surface(_words("placed", _vector("at", at), turn) + " " + self.recipe)
-
-
-Surface.__or__, Surface.__and__, Surface.__invert__, Surface.__sub__ = _or, _and, _not, _minus
-Surface.placed = _placed
-_placed.__name__, _placed.__qualname__ = "placed", "Surface.placed"
-
-
-def _joined(kind, a, b):
-    """One union of all parts in place of unions of unions: it answers sooner, and knows all edges."""
-    if not isinstance(b, Surface):
-        return NotImplemented
-    parts = [_parts_of(kind, s.recipe) for s in (a, b)]
-    return Surface(f"{kind} {sum(n for n, _ in parts)} " + " ".join(recipes for _, recipes in parts))
-
-
-def _parts_of(kind, recipe):
-    words = recipe.split(" ", 2)
-    return (int(words[1]), words[2]) if words[0] == kind else (1, recipe)
 
 
 def _turned_from_z(prism, axis):
@@ -185,29 +139,3 @@ def _nodes(count, low, step):
     x, y, z = (low[k] + np.arange(count[k]) * step[k] for k in range(3))
     grid = np.meshgrid(z, y, x, indexing="ij")
     return np.stack([part.ravel() for part in reversed(grid)], axis=1)
-
-
-def _vector(name, value):
-    try:
-        numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        numbers = None
-    if numbers is None or numbers.shape != (3,):
-        raise ValueError(f"{name} must be three numbers, got {value!r}; give (x, y, z)")
-    return numbers
-
-
-def _number(name, value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be a number, got {value!r}; give one in metres or radians") from None
-
-
-def _words(kind, *parts):
-    """A recipe: repr gives as many digits as bring the same bits back."""
-    words = [kind]
-    for part in parts:
-        values = np.atleast_1d(np.asarray(part)).ravel().tolist()
-        words += [repr(value) for value in values]
-    return " ".join(words)

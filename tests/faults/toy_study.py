@@ -11,6 +11,8 @@ from graindrive.errors import UsageError
 from graindrive.headless import listening_ports, main
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.progress import run_blocks
+from graindrive.study import Study
+from graindrive.yade_march import YadeMarch
 
 
 class Toy(StudyParameters):
@@ -48,10 +50,10 @@ def study(p, folder):
             os.kill(os.getpid(), getattr(signal, f"SIG{p.ask}"))
             time.sleep(10)
 
-    timing = run_blocks(p.steps - first, p.steps // 10, on_block, grains=1, label="toy")
+    timing = run_blocks(YadeMarch(1), p.steps - first, p.steps // 10, on_block, label="toy")
     if p.fault == "study":
         raise ValueError("the study\nhas a bug")
-    folder.note(steps=timing.steps, particle_steps_per_second=timing.particle_steps_per_second)
+    folder.note(steps=timing.steps, particle_steps_per_second=timing.work_per_second)
     folder.summarize(answer=np.float64(42), answer_err=float("nan"), first=first)
 
 
@@ -62,5 +64,13 @@ def figure(path):
     (path / "figure.png").write_bytes(b"")
 
 
+STUDY = Study(
+    name="toy_study",
+    parameters=Toy,
+    presets={"smoke": {}, "demo": {"steps": 100}},
+    run=study,
+    figure=figure,
+)
+
 if __name__ == "__main__":
-    main(study, Toy, {"smoke": {}, "demo": {"steps": 100}}, figure=figure)
+    main(STUDY)

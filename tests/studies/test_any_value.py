@@ -6,16 +6,14 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from graindrive import headless
 from graindrive.command_line import parse
 from graindrive.errors import UsageError
 from graindrive.parameters import LIMITS, choices, plain_type
 from graindrive.run_place import place_of
+from graindrive.study import loaded
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"
-STUDIES = {
-    path.stem: headless.declaration_of(path) for path in sorted(FOLDER.glob("[mw]*.py"))
-}  # magnus, wiggle and its presets
+STUDIES = {path.stem: loaded(path) for path in sorted(FOLDER.glob("[mw]*.py"))}  # magnus, wiggle and its presets
 KEYS = [(study, key) for study in ("magnus", "wiggle") for key in STUDIES[study].parameters.__fields__]
 
 SIZES = ["5e-324", "1e-300", "1e-160", "1e-30", "1e-29", "1e-12", "0", "-0", "1e12", "1e29", "1e30", "1e160", "1e308"]
@@ -72,9 +70,7 @@ def outcome(study, *arguments):
     """Return "accepted" or "refused" for a study's arguments; fails for any answer that is not one printable line."""
     declared = STUDIES[study]
     try:
-        p = parse(
-            declared.parameters, arguments, declared.presets, study=study, defaults=declared.defaults, environment={}
-        )
+        p = parse(declared, arguments, environment={})
         place_of(p.out)
         declared.check(p)
     except UsageError as error:
@@ -175,17 +171,13 @@ def test_no_combination_of_values_escapes_the_one_line_answer(study):
 def test_what_cannot_be_run_is_refused_before_anything_runs(study, arguments, words):
     declared = STUDIES[study]
     with pytest.raises(UsageError, match=words):
-        p = parse(declared.parameters, arguments, declared.presets, study=study, environment={})
+        p = parse(declared, arguments, environment={})
         place_of(p.out)
         declared.check(p)
 
 
 def test_zero_has_no_sign():
-    p = parse(
-        STUDIES["magnus"].parameters, ["spin_ratio=-0", "mu=-0"], STUDIES["magnus"].presets, study="m", environment={}
-    )
+    p = parse(STUDIES["magnus"], ["spin_ratio=-0", "mu=-0"], environment={})
     assert math.copysign(1, p.spin_ratio) == math.copysign(1, p.mu) == 1
-    q = parse(
-        STUDIES["magnus"].parameters, ["spin_ratio=0", "mu=0"], STUDIES["magnus"].presets, study="m", environment={}
-    )
+    q = parse(STUDIES["magnus"], ["spin_ratio=0", "mu=0"], environment={})
     assert p.digest() == q.digest()

@@ -7,18 +7,18 @@ from pathlib import Path
 import h5py
 import pytest
 
-from graindrive import headless, lid, progress, recording
+from graindrive import lid, recording, yade_march
 from graindrive.campaign.plan import read_plan
 from graindrive.command_line import help_table, parse
 from graindrive.errors import EngineError, UsageError
 from graindrive.run_folder import RunFolder
+from graindrive.study import loaded
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"
 
 
 def parsed(name, *arguments):
-    study = headless.declaration_of(FOLDER / f"{name}.py")
-    return parse(study.parameters, arguments, study.presets, study=name, defaults=study.defaults, environment={})
+    return parse(loaded(FOLDER / f"{name}.py"), arguments, environment={})
 
 
 @pytest.mark.parametrize(
@@ -58,8 +58,7 @@ def test_help_shows_what_is_taken_for_auto():
         ("wiggle", "smoke: 0, demo: auto (46.2), paper: auto (0.0)"),
         ("magnus", "smoke: auto (60.0), demo: auto (150.0), paper: auto (300.0)"),
     ):
-        study = headless.declaration_of(FOLDER / f"{name}.py")
-        assert words in help_table(study.parameters, study.presets, study=name)
+        assert words in help_table(loaded(FOLDER / f"{name}.py"))
 
 
 @pytest.fixture
@@ -109,14 +108,14 @@ def test_a_guard_that_trips_names_the_keys_that_help(wiggle, tmp_path, monkeypat
         raise EngineError("step 7: grains 1 and 2 overlap by 0.31 of a radius, more than 0.3")
 
     p = parsed("wiggle", *TINY, f"out={tmp_path / 'run'}")
-    monkeypatch.setattr(progress, "advance", trip)
+    monkeypatch.setattr(yade_march, "advance", trip)
     with pytest.raises(EngineError, match="more than 0.3; what may help: lower dt_factor, height or lid_pressure"):
         with RunFolder(p, study="wiggle") as folder:
             wiggle.run(p, folder)
     for name in ("wiggle", "magnus"):
         keys = importlib.import_module(name).OVERLAP_KEYS
         named = set(keys.replace(",", " ").split()) - {"lower", "raise", "or"}
-        assert named <= set(headless.declaration_of(FOLDER / f"{name}.py").parameters.__fields__)
+        assert named <= set(loaded(FOLDER / f"{name}.py").parameters.__fields__)
 
 
 def test_only_overlaps_get_that_advice():

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import headless, progress
+from graindrive import headless, yade_march
 from graindrive.errors import EngineError, Interrupted, UsageError
 from graindrive.run_folder import RunFolder
 
@@ -131,17 +131,17 @@ def test_both_loops_give_the_same_forces_until_chaos(magnus, tmp_path):
 def test_an_interrupted_run_goes_on_as_if_it_had_not_been(magnus, tmp_path, monkeypatch, fields, wall_pressure):
     keys = dict(fields=fields, field_spacing=0.5, wall_pressure=wall_pressure)
     expected = carry_out(magnus, tmp_path / "whole", **keys)
-    advance, blocks = progress.advance, iter(range(12))
+    advance, blocks = yade_march.advance, iter(range(12))
 
     def stop_in_the_twelfth_block(steps):
         if next(blocks) == 11:
             raise Interrupted(15)
         return advance(steps)
 
-    monkeypatch.setattr(progress, "advance", stop_in_the_twelfth_block)
+    monkeypatch.setattr(yade_march, "advance", stop_in_the_twelfth_block)
     with pytest.raises(Interrupted):
         carry_out(magnus, tmp_path / "parts", checkpoint_seconds=0, **keys)  # one after every block
-    monkeypatch.setattr(progress, "advance", advance)
+    monkeypatch.setattr(yade_march, "advance", advance)
     found = carry_out(magnus, tmp_path / "parts", resume=True, **keys)
     assert all(np.array_equal(expected[name], found[name]) for name in expected)
     one, other = summary_of(tmp_path / "whole"), summary_of(tmp_path / "parts")

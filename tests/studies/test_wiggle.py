@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import intruder, packing, progress
+from graindrive import intruder, packing, yade_march
 from graindrive.errors import Interrupted
 from graindrive.material import HertzHistoryMaterial
 from graindrive.run_folder import RunFolder
@@ -103,18 +103,18 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
     with RunFolder(whole, study="wiggle") as folder:
         wiggle.run(whole, folder)
 
-    advance, blocks = progress.advance, iter(range(7))
+    advance, blocks = yade_march.advance, iter(range(7))
 
     def stop_in_the_seventh_block(steps):
         if next(blocks) == 6:
             raise Interrupted(15)
         return advance(steps)
 
-    monkeypatch.setattr(progress, "advance", stop_in_the_seventh_block)
+    monkeypatch.setattr(yade_march, "advance", stop_in_the_seventh_block)
     parts = tiny(wiggle, loop=loop, out=str(tmp_path / "parts"), checkpoint_seconds=0)  # one after every block
     with pytest.raises(Interrupted), RunFolder(parts, study="wiggle") as folder:
         wiggle.run(parts, folder)
-    monkeypatch.setattr(progress, "advance", advance)
+    monkeypatch.setattr(yade_march, "advance", advance)
     resumed = parts.copy(update={"resume": True})
     with RunFolder(resumed, study="wiggle") as folder:
         assert folder.resumed["step"] > 0

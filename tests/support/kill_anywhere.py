@@ -21,6 +21,7 @@ import numpy as np
 
 from graindrive import headless
 from graindrive.parameters import StudyParameters, quantity
+from graindrive.study import Study
 
 STEPS = 5
 TIMED = ("wall_s", "particle_steps_per_second")
@@ -77,8 +78,10 @@ def session(at, interrupted_at=None, largest_file=None, **keys):
             resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
         p = Parameters(out=str(place / "work" / "a"), **keys)
         killer.arm(at)
-        action = lambda q, folder: study(q, folder, interrupted_at)  # noqa: E731
-        code = headless.guarded(lambda: headless.carry_out(action, p, "small", figure), "small")
+        small = Study(
+            "small", Parameters, {"demo": {}}, lambda q, folder: study(q, folder, interrupted_at), figure=figure
+        )
+        code = headless.guarded(lambda: headless.carry_out(small, p), "small")
         if largest_file is None:
             os._exit(code)
         headless.end(code)  # as a study ends: the interpreter's own end may crash on a full disk

@@ -86,6 +86,7 @@ def write_run(folder, name, keys, summary, groups, study="magnus"):
         for key, value in keys.items():
             dataset = file.require_group("parameters").create_dataset(key, data=value)
             dataset.attrs["unit"] = "-"
+        file["constants/d"] = 0.02
         file.create_group("provenance").attrs.update(cpu="a processor", code_version="1", threads=1)
         for group, arrays in groups.items():
             for array, values in arrays.items():

@@ -44,7 +44,7 @@ def test_lists_are_crossed_and_single_values_are_kept(plan):
     assert arguments(found)[2:] == [
         f"scale=smoke steps=20 seed={seed} period={period} fault=none" for seed in (3, 4) for period in (1.5, 2)
     ]
-    assert found.study == "toy_study" and found.report == ""
+    assert found.study.name == "toy_study" and found.report is None
 
 
 def test_a_sweep_may_be_several_grids_and_its_values_win_over_common(plan):
@@ -146,7 +146,9 @@ def test_switches_and_empty_values_become_the_studys_words(plan):
         ((f"study: {TOY}", "study: nowhere.py"), "there is no file"),
         ((f"study: {TOY}", "study: 5"), "study must be the name of a study, got 5"),
         (("common:", "report: weather\ncommon:"), "no report 'weather'"),
-        (("common:", "report: magnus\ncommon:"), "report magnus knows no sweep 'a'"),
+        (("common:", "report: magnus\ncommon:"), "no report 'magnus': study toy_study has none"),
+        ((f"study: {TOY}\ncommon: {{scale: smoke, steps: 20}}", "study: magnus\nreport: magnus"), "knows no sweep 'a'"),
+        (("common:", "report: wiggle\ncommon:"), "no report 'wiggle'"),
     ],
 )
 def test_a_bad_file_is_refused_with_the_place_the_value_and_the_way_out(plan, change, words):
@@ -224,7 +226,7 @@ def test_a_file_that_is_no_campaign_is_refused(plan, content):
 
 def test_a_script_that_is_no_study_is_refused(plan, tmp_path):
     (tmp_path / "no_study.py").write_text("x = 1\n")
-    with pytest.raises(UsageError, match="does not call headless.main"):
+    with pytest.raises(UsageError, match="campaign.yaml: .*no_study.py makes no STUDY"):
         plan(GOOD.replace(str(TOY), "no_study.py"))
 
 

@@ -10,7 +10,9 @@ from graindrive import exports, text_exports
 from graindrive.errors import UsageError
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import __main__ as command
+from graindrive.command_line import parameters_or_exit
 from graindrive.postproc.reader import Run
+from graindrive.study import Study
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +92,7 @@ def test_an_older_export_stays_until_the_new_one_is_whole(tmp_path, monkeypatch)
 @pytest.mark.parametrize("given, words", [("xzy", "got 'xzy'"), ("vtk;xyz", "comma list of vtk, xyz, lammps")])
 def test_an_unknown_format_is_refused_with_those_that_there_are(finished, given, words, capsys):
     with pytest.raises(SystemExit) as refused:
-        StudyParameters.from_command_line([f"export={given}"], {"demo": {}}, study="test")
+        parameters_or_exit(Study("test", StudyParameters, {"demo": {}}, run=None), [f"export={given}"])
     said = capsys.readouterr().err
     assert refused.value.code == 2 and words in said and said.count("\n") == 1
     assert command.main([str(finished), f"export={given}"]) == 2

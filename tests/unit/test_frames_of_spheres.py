@@ -5,7 +5,8 @@ import extended_xyz
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, exports, grain_loop, picture, recording, scene
+from graindrive import engines, exports, grain_loop, picture, scene
+from graindrive.block_means import block_means
 from graindrive.errors import UsageError
 from graindrive.postproc import quantities
 from graindrive.postproc.reader import Frame, Run
@@ -175,4 +176,4 @@ def test_means_of_forces_in_the_plane_are_refused_among_spheres():
     spheres.loop(before_newton=[binner])
     grain_loop.use_grain_loop()
     with pytest.raises(UsageError, match="block_means records forces in the plane"):
-        recording.block_means(binner)
+        block_means(binner)

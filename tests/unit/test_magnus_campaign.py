@@ -11,10 +11,11 @@ from graindrive.postproc.campaign import results
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
-from graindrive.postproc.magnus import campaign as magnus_campaign
+from graindrive.postproc.magnus.campaign import REPORT
 from graindrive.postproc.magnus.claims import drag_claims, speed_claims
 from graindrive.postproc.magnus.wake import wake_claims
 from graindrive.postproc.reader import RunError
+from graindrive.study import house, loaded
 
 SPEEDS = dict(phi=[0.352, 0.818], v0=[0.25, 0.5, 1.0, 2.0])
 SWEEPS = dict(
@@ -61,10 +62,10 @@ def test_runs_with_large_errors_decide_nothing(folder):
 
 def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder):
     make_campaign(folder, MadeUpMagnus(rise=0.5), SWEEPS)
-    report = write_report(folder).read_text()
+    report = write_report(folder, REPORT).read_text()
     assert "0 not reproduced, 0 not decided" in report
-    assert report.count("![") == len(magnus_campaign.FIGURES)
-    names = {f"made_up-{figure.name}" for figure in magnus_campaign.FIGURES}
+    assert report.count("![") == len(REPORT.figures)
+    names = {f"made_up-{figure.name}" for figure in REPORT.figures}
     assert {p.stem for p in (folder / "figures").iterdir()} == names
     assert all((folder / "figures" / f"{name}.png").stat().st_size > 10_000 for name in names)
     assert "scripts/campaign campaigns/x.yaml" in report and "core-seconds" in report and "a processor" in report
@@ -95,7 +96,7 @@ def test_a_drag_that_does_not_rise_with_spin_is_reported(folder):
 
 def test_the_table_has_a_row_per_run_with_keys_and_quantities_sorted(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
-    write_report(folder)
+    write_report(folder, REPORT)
     rows = list(csv.DictReader((folder / "table.csv").open()))
     assert len(rows) == 8
     values = [(float(row["phi"]), float(row["v0"])) for row in rows]
@@ -108,7 +109,7 @@ def test_a_campaign_of_which_nothing_is_done_has_an_empty_table(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
     for run in (folder / "runs").iterdir():
         (run / "run.h5").unlink()
-    assert write_report(folder).name == "table.csv"
+    assert write_report(folder, REPORT).name == "table.csv"
     assert (folder / "table.csv").read_text() == "run,sweeps\n"
 
 
@@ -116,7 +117,7 @@ def test_missing_runs_are_counted_and_their_claims_not_made_up(folder):
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
     for run in sorted((folder / "runs").glob("phi_0.818*"))[1:]:
         (run / "summary.json").unlink()
-    report = write_report(folder).read_text()
+    report = write_report(folder, REPORT).read_text()
     assert "5 runs of `magnus` (3 more are missing)" in report
     (row,) = [line for line in report.splitlines() if "0.818: log D" in line]
     assert "no data" in row and "**not decided**" in row
@@ -131,14 +132,14 @@ def test_results_keep_other_campaigns_and_replace_their_own(folder, tmp_path):
     studies = tmp_path / "studies"
     studies.mkdir()
     make_campaign(folder, MadeUpMagnus(), dict(speed=SPEEDS))
-    write_report(folder)
+    write_report(folder, REPORT)
     other = folder.with_name("other")
     folder.rename(other)
     for name in ("b", "a", "b"):
         (other / "campaign.json").write_text(
             json.dumps({**json.loads((other / "campaign.json").read_text()), "name": name})
         )
-        write_report(other)
+        write_report(other, REPORT)
         results.publish([other], studies)
     text = (studies / "RESULTS.md").read_text()
     assert list(results.stored_sections(studies / "RESULTS.md")) == ["a", "b"]
@@ -147,8 +148,10 @@ def test_results_keep_other_campaigns_and_replace_their_own(folder, tmp_path):
 
 
 def test_expected_cost_follows_grains_and_steps():
-    keys = dict(phi=0.352, width=300, height=200, travel=300, v0=1.0, dt_factor=1.0)
+    study = loaded(house()["magnus"])
+    p = study.parameters(phi=0.352, width=300, height=200, v0=1.0)
     grains, steps = 0.352 * 300 * 200 / (np.pi / 4), 300 * 0.02 / 2e-6
-    assert magnus_campaign.expected_core_seconds(keys) == pytest.approx(grains * steps / 313e6)
-    assert magnus_campaign.expected_core_seconds({**keys, "travel": None}) == pytest.approx(grains * steps / 313e6)
-    assert magnus_campaign.expected_core_seconds({**keys, "dt_factor": 2.0}) == pytest.approx(grains * steps / 626e6)
+    assert study.cost.work(p) == pytest.approx(grains * steps) and study.cost.unit == "particle-steps"
+    assert study.cost.core_seconds(p) == pytest.approx(grains * steps / 313e6)
+    assert study.cost.core_seconds(p.copy(update=dict(travel=150))) == pytest.approx(grains * steps / 626e6)
+    assert study.cost.core_seconds(p.copy(update=dict(dt_factor=2.0))) == pytest.approx(grains * steps / 626e6)

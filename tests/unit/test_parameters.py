@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given, strategies as st
 from pydantic import root_validator
 
-from graindrive.command_line import help_table, parse
+from graindrive.command_line import help_table, parameters_or_exit, parse
 from graindrive.errors import UsageError
 from graindrive.parameters import StudyParameters, quantity
+from graindrive.study import Study
 
 PRESETS = {"smoke": {"time": 10.0, "width": 20.0}, "demo": {"time": 100.0}, "paper": {"time": 1000.0, "width": 300.0}}
 
@@ -35,13 +36,17 @@ class Wiggle(StudyParameters):
         return values
 
 
-def parsed(*arguments, **options):
-    return parse(Wiggle, arguments, PRESETS, study="wiggle", environment={}, **options)
+def study(name="wiggle", presets=PRESETS, **defaults):
+    return Study(name, Wiggle, presets, run=None, defaults=defaults)
 
 
-def message(*arguments, **options):
+def parsed(*arguments, **defaults):
+    return parse(study(**defaults), arguments, environment={})
+
+
+def message(*arguments):
     with pytest.raises(UsageError) as caught:
-        parsed(*arguments, **options)
+        parsed(*arguments)
     text = str(caught.value)
     assert text.isprintable(), "the message must be one line"
     return text
@@ -51,7 +56,7 @@ def test_defaults_then_scale_then_user():
     assert (parsed().time, parsed().width) == (100, 60)
     assert (parsed("scale=paper").time, parsed("scale=paper").width) == (1000, 300)
     assert parsed("time=7", "scale=paper").time == 7
-    preset = parsed("scale=smoke", defaults={"shape": "disk", "width": 33.0})
+    preset = parsed("scale=smoke", shape="disk", width=33.0)
     assert (preset.shape, preset.width) == ("disk", 20)
 
 
@@ -107,7 +112,7 @@ def test_a_condition_between_values_names_both():
 
 def test_a_scale_that_the_study_lacks():
     with pytest.raises(UsageError, match="scale=paper is not known to x; allowed: demo"):
-        parse(Wiggle, ["scale=paper"], {"demo": {}}, study="x", environment={})
+        parse(study("x", {"demo": {}}), ["scale=paper"], environment={})
 
 
 def test_default_folder_is_readable_and_differs_between_runs():
@@ -115,7 +120,7 @@ def test_default_folder_is_readable_and_differs_between_runs():
     assert parsed("period=2", "scale=smoke", "resume=1").out == "wiggle-smoke-period_2"
     assert parsed("out=here").out == "here"
     assert len(parsed("period=2." + "0" * 200).out) <= 120
-    assert "/" not in parse(Wiggle, ["period=2"], PRESETS, study="a/b", environment={}).out
+    assert "/" not in parse(study("a/b"), ["period=2"], environment={}).out
 
 
 def test_identity_ignores_what_does_not_change_the_result():
@@ -130,7 +135,7 @@ def test_parameters_are_frozen():
 
 
 def test_help_shows_every_key_with_unit_default_meaning_and_range():
-    table = help_table(Wiggle, PRESETS, study="wiggle")
+    table = help_table(study())
     for key in Wiggle.__fields__:
         assert any(line.startswith(key + " ") for line in table.splitlines())
     period = next(line for line in table.splitlines() if line.startswith("period "))
@@ -144,10 +149,10 @@ def test_help_shows_every_key_with_unit_default_meaning_and_range():
 @pytest.mark.parametrize("word", ["help", "--help", "-h"])
 def test_help_exits_0_and_a_mistake_exits_2(word, capsys):
     with pytest.raises(SystemExit) as caught:
-        Wiggle.from_command_line(["nonsense=1", word], PRESETS, study="wiggle")
+        parameters_or_exit(study(), ["nonsense=1", word])
     assert caught.value.code == 0 and "amplitude" in capsys.readouterr().out
     with pytest.raises(SystemExit) as caught:
-        Wiggle.from_command_line(["nonsense=1"], PRESETS, study="wiggle")
+        parameters_or_exit(study(), ["nonsense=1"])
     captured = capsys.readouterr()
     assert caught.value.code == 2 and captured.out == "" and captured.err.count("\n") == 1
 
@@ -201,7 +206,7 @@ class TestBatchTable:
         return path
 
     def row(self, table, line, *arguments):
-        return parse(Wiggle, arguments, PRESETS, study="w", environment={"YADE_BATCH": f"{table}:{line}"})
+        return parse(study("w"), arguments, environment={"YADE_BATCH": f"{table}:{line}"})
 
     def test_rows(self, table):
         first, second = self.row(table, 3), self.row(table, 4)
@@ -255,10 +260,10 @@ class TestBatchTable:
             self.row(tmp_path, 2)
 
     def test_no_batch(self):
-        assert parse(Wiggle, [], PRESETS, study="w", environment={"YADE_BATCH": ""}).period == 4
+        assert parse(study("w"), [], environment={"YADE_BATCH": ""}).period == 4
 
 
 def test_parsing_needs_neither_yade_nor_a_display():
-    code = "import sys, graindrive.parameters, graindrive.command_line; sys.exit('yade' in sys.modules)"
+    code = "import sys, graindrive.headless, graindrive.recording, graindrive.study; sys.exit('yade' in sys.modules)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0

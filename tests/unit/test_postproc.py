@@ -148,10 +148,10 @@ def test_command_mistakes_are_one_line_and_exit_2(run_folder, extra, words, caps
 
 
 def test_command_names_the_studies_it_can_draw(tmp_path, capsys):
-    out = make(tmp_path / "run", study="drum")
-    assert (
-        command.main([str(out)]) == 2 and "drum, which has no figure yet; there are: wiggle" in capsys.readouterr().err
-    )
+    out = make(tmp_path / "run", study="weather")
+    assert command.main([str(out)]) == 2
+    said = capsys.readouterr().err
+    assert "weather, which has no figure here; there are: " in said and " wiggle, " in said and "study=FILE" in said
 
 
 def test_postproc_runs_as_a_module(run_folder):

@@ -14,7 +14,7 @@ from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.measured import Limit, Measured
-from graindrive.postproc.wiggle import campaign as wiggle_campaign
+from graindrive.postproc.wiggle.campaign import REPORT
 from graindrive.postproc.wiggle import runs as wiggle_runs
 from graindrive.postproc.wiggle.claims import (
     field_claims,
@@ -31,6 +31,7 @@ from graindrive.postproc.wiggle.period_claims import (
     period_claims,
     table_claims,
 )
+from graindrive.study import house, loaded
 
 FIRST = dict(disk=2.75, square=3.5, tall=3.6, wide=2.5, triangle=4.4)  # within Table 1's observed ranges
 SPEED = dict(disk=0.2, square=0.1, tall=0.15, wide=0.06, triangle=0.01)
@@ -285,8 +286,8 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
             scene=[dict(scene, period=[1.0, 4.0]) for scene in SCENES],
         ),
     )
-    report = write_report(folder).read_text()
-    for planned in wiggle_campaign.FIGURES:
+    report = write_report(folder, REPORT).read_text()
+    for planned in REPORT.figures:
         figure = folder / "figures" / f"made_up-{planned.name}.png"
         assert figure.stat().st_size > 10_000
         assert f"figures/{figure.name}" in report
@@ -299,5 +300,6 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
 
 
 def test_the_cost_of_the_papers_run_is_that_of_its_particle_steps():
-    keys = dict(width=300.0, height=195.0, time=1000.0, dt_factor=1.0)
-    assert wiggle_campaign.expected_core_seconds(keys) == pytest.approx(63000 * 1e7 / 90e6, rel=0.02)
+    study = loaded(house()["wiggle"])
+    assert study.cost.work(study.usual("paper")) == pytest.approx(63000 * 1e7, rel=0.02)
+    assert study.cost.core_seconds(study.usual("paper")) == pytest.approx(63000 * 1e7 / 90e6, rel=0.02)

@@ -7,6 +7,7 @@ beds do not order as equal spheres would. Beds begin without tangential springs,
 import numpy as np
 
 from . import layout
+from .kept import kept
 from .layout import FREE, WALL
 
 D = 1.5e-3  # diameter [m]
@@ -108,6 +109,5 @@ def tilted(bed, slope=SLOPE):
 def lift_flow():
     """Return lift20k on a slope of 24 degrees, flowing; 0.2 s after it was set in motion the shear has renewed its contacts."""
     from . import ours
-    from .scenes import scene
 
-    return ours.move_on(tilted(scene("lift20k")), lambda loop, steps: steps >= 20_000)
+    return ours.move_on(tilted(kept("lift20k", lift20k)), lambda loop, steps: steps >= 20_000)

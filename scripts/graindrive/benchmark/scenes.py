@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from .. import cache, channel
+from .. import channel
 from ..material import HertzHistoryMaterial
 from . import layout, lift
+from .kept import kept
 from .layout import DRIVEN, FREE, WALL
-
-RECIPE = 2  # raise it when a scene comes out different
 
 WIGGLE = dict(law="hertzHistory", constants=(2e6, 2.46e6, 2500.0, 2500.0), density=1.0)
 MAGNUS = dict(law="hertzHistory", constants=(2e9, 2.45e9, 8e6, 8e6), density=20.0)
@@ -16,8 +15,7 @@ DRUM = dict(law="springDashpot", constants=(2e5, 2e5 * 2 / 7, 0.92), density=4 /
 
 def scene(name):
     """Return the scene of that name, from the cache or by making it."""
-    made = cache.cached(f"bench-{name}", {"scene": name}, RECIPE, SCENES[name])
-    return dict(made, kind=made["kind"].astype(int))
+    return kept(name, SCENES[name])
 
 
 def with_restitution(a_scene):

@@ -3,16 +3,15 @@
 import contextlib
 import errno
 import fcntl
-import json
 import os
 import signal
 import subprocess
 import sys
 from pathlib import Path
 
-from .. import whole_files
 from ..errors import Interrupted, UsageError
 from ..run_place import damage, set_aside, stored_digest
+from . import plan_json
 
 SNAKEFILE = Path(__file__).with_name("Snakefile")
 IN_THE_WAY = {getattr(errno, f"E{name}") for name in "ISDIR NOTDIR EXIST ACCES PERM ROFS NAMETOOLONG LOOP".split()}
@@ -44,24 +43,13 @@ def opened(folder, plan):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
-        whole_files.write_text(folder / "campaign.json", json.dumps(as_plain(plan), indent=1) + "\n")
+        plan_json.write(folder, plan, program(plan.study))
         yield lock
 
 
-def as_plain(plan):
-    """Return a plan as a dict for JSON: what the Snakefile and the report need of it."""
-    return {
-        "name": plan.name,
-        "file": plan.file,
-        "origin": str(plan.origin),
-        "study": plan.study,
-        "study_file": str(plan.study_file),
-        "report": plan.report,
-        "runs": [
-            {"name": run.name, "arguments": run.arguments, "sweeps": run.sweeps, "digest": run.parameters.digest()}
-            for run in plan.runs
-        ],
-    }
+def program(study):
+    """Return the command that runs a study's file: YADE's program in batch mode on one core, or plain Python."""
+    return ["yade", "-n", "-x", "-j1"] if study.needs_yade else [sys.executable]
 
 
 def missing(folder, plan):

@@ -1,7 +1,7 @@
 """The plan of a campaign: from a YAML of values to checked, named runs; nothing is run or written here.
 
     study: magnus                    # of studies/, or a file beside this one
-    report: magnus                   # graindrive.postproc.magnus.campaign; may be left out
+    report: magnus                   # the study's own; may be left out
     common: {mu: 0.5, width: 100}    # keys of the study, for all runs
     sweeps:                          # each a grid, or a list of grids: lists of values are crossed
       speed: {phi: [0.352, 0.818], v0: [0.5, 1, 2], seed: [1, 2]}
@@ -11,17 +11,15 @@
 """
 
 import contextlib
-import importlib
-import importlib.util
 import itertools
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .. import headless
 from ..command_line import nearest, parse, refuse, require_key
 from ..errors import UsageError, one_line
 from ..parameters import plain_type
+from ..study import house, loaded
 from .plan_file import read_plan_file, shortened
 
 OWN_KEYS = {  # of a study, which a campaign sets itself
@@ -48,15 +46,15 @@ class Plan:
     """A campaign.
 
     `file` is named from the top of the checkout if it lies there; `origin` is the folder from which values name files;
-    `report` is "" for none; the runs stand in the order of the YAML.
+    `study` is a `Study` and `report` its `Report`, None where none is asked for; the runs stand in the order of the YAML.
     """
 
     name: str
     file: str
     origin: Path
-    study: str
+    study: object
     study_file: Path
-    report: str
+    report: object
     runs: list
 
 
@@ -65,17 +63,16 @@ def read_plan(path):
     path = Path(path)
     content = read_plan_file(path)
     study_file = find_study(path, content["study"])
-    report = content.get("report") or ""
-    check_report(path, report, content["sweeps"])
-    study = declared(study_file)
+    study = loaded_for(path, study_file)
+    report = report_of(path, study, content.get("report") or "", content["sweeps"])
     with contextlib.chdir(path.parent):  # files that values name (an outline) are named from the campaign's file
         runs = planned_runs(path, content, study)
-    return Plan(path.stem, named_in_house(path), path.resolve().parent, study.name, study_file, report, runs)
+    return Plan(path.stem, named_in_house(path), path.resolve().parent, study, study_file, report, runs)
 
 
 def named_in_house(path):
     """Return the file's name from the top of this checkout; its bare name if it lies elsewhere."""
-    top = studies_folder().parent
+    top = Path(__file__).resolve().parents[3]
     return str(path.resolve().relative_to(top)) if path.resolve().is_relative_to(top) else path.name
 
 
@@ -89,48 +86,36 @@ def find_study(path, name):
         if not file.is_file():
             raise UsageError(f"{path}: study={one_line(name)}: there is no file {file}")
         return file.resolve()
-    folder = studies_folder()
-    known = sorted(p.stem for p in folder.glob("[!_]*.py") if p.stem != "house")
+    known = house()
     if name not in known:
         hint = nearest(name, known, "did you mean ", "? ")
         raise UsageError(f"{path}: there is no study '{one_line(name)}'; {hint}there are: {' '.join(known)}")
-    return folder / f"{name}.py"
+    return known[name]
 
 
-def studies_folder():
-    """Return the folder of the studies of this checkout."""
-    return Path(headless.__file__).resolve().parents[2] / "studies"
-
-
-def check_report(path, report, sweeps):
-    """Refuse a report that is not there, and sweeps that it would not look at."""
-    if not report:
-        return
-    module = report_module(report)
-    if module is None:
-        raise UsageError(f"{path}: there is no report '{one_line(report)}': no graindrive.postproc.{report}.campaign")
-    for sweep in sweeps:
-        if sweep not in module.SWEEPS:
-            hint = nearest(sweep, module.SWEEPS, "did you mean ", "? ")
-            raise UsageError(
-                f"{path}: report {report} knows no sweep '{one_line(sweep)}'; {hint}it uses: {' '.join(module.SWEEPS)}"
-            )
-
-
-def report_module(report):
-    """Return the module of the report named `report`; None if there is none."""
-    package = f"graindrive.postproc.{report}"
-    known = str(report).isidentifier() and importlib.util.find_spec(package)
-    inside = known and known.submodule_search_locations and importlib.util.find_spec(f"{package}.campaign")
-    return importlib.import_module(f"{package}.campaign") if inside else None
-
-
-def declared(study_file):
-    """Return what the study declares; UsageError if the file is no study."""
+def loaded_for(path, study_file):
+    """Return the `Study` of a file; UsageError in the name of the campaign's file if it makes none."""
     try:
-        return headless.declaration_of(study_file)
-    except RuntimeError as error:
-        raise UsageError(str(error)) from None
+        return loaded(study_file)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def report_of(path, study, name, sweeps):
+    """Return the study's `Report` of that name, None for no name; refuse another one, and sweeps that it would not look at."""
+    report = study.report
+    if not name:
+        return None
+    if report is None or name != report.name:
+        has = f"has {report.name}" if report else "has none"
+        raise UsageError(f"{path}: there is no report '{one_line(name)}': study {study.name} {has}")
+    for sweep in sweeps:
+        if sweep not in report.sweeps:
+            hint = nearest(sweep, report.sweeps, "did you mean ", "? ")
+            raise UsageError(
+                f"{path}: report {name} knows no sweep '{one_line(sweep)}'; {hint}it uses: {' '.join(report.sweeps)}"
+            )
+    return report
 
 
 # ---- runs ------------------------------------------------------------------------------------------------------------
@@ -186,7 +171,7 @@ def planned_run(place, values, study):
             raise UsageError(f"{place}: {key} is not for campaigns: {reason}; leave it out")
     try:
         arguments = [argument(study.parameters, key, value) for key, value in values.items()]
-        p = parse(study.parameters, arguments, study.presets, study=study.name, defaults=study.defaults, environment={})
+        p = parse(study, arguments, environment={})
         study.check(p)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
@@ -233,7 +218,7 @@ def run_name(p, study):
 
     It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again.
     """
-    usual = study.parameters(**{**study.defaults, **study.presets[p.scale], "scale": p.scale}).identity()
+    usual = study.usual(p.scale).identity()
     told = [
         f"{key}_{shortly(value)}"
         for key, value in sorted(p.identity().items())

@@ -1,0 +1,175 @@
+"""A study as one object: what it asks, measures and costs, how it is run and drawn, and what papers say of it.
+
+A study file makes one, named STUDY, and hands it to `headless.main`; `loaded` gives it to whoever only wants to know.
+"""
+
+import contextlib
+import dataclasses
+import importlib.util
+import io
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Optional, Union
+
+from .errors import UsageError
+from .parameters import StudyParameters
+from .postproc import quantities
+
+NAME = "STUDY"  # of the object in a study file
+NO_STUDIES = ("house",)  # files beside the studies that are none
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A quantity of summary.json that the study is made for; one of them is the `headline`."""
+
+    name: str
+    unit: str
+    meaning: str
+    headline: bool = False
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number that the study fixes: it stands in every run folder with its unit and its meaning."""
+
+    value: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a run costs, packing aside: `work(p)` [`unit`], of which one core does `rate` a second, a number or `rate(p)`."""
+
+    work: Callable
+    rate: Union[float, Callable]
+    unit: str = "particle-steps"
+
+    def core_seconds(self, p):
+        """Return the seconds that a run of the parameters `p` takes one core."""
+        return float(self.work(p) / (self.rate(p) if callable(self.rate) else self.rate))
+
+    def in_words(self, p):
+        """Return the work of a run and its time on one core: "7.9e+08 particle-steps, 9 s"."""
+        return f"{self.work(p):.2g} {self.unit}, {duration(self.core_seconds(p))}"
+
+
+def nothing_to_check(_p):
+    """All values of a study's class of parameters go together."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study; ValueError for one that does not hold together, saying which part and why.
+
+    `run(p, folder)` does the work with checked parameters `p`, an instance of `parameters`, and an open `RunFolder`.
+    `presets` maps scales to the values that they change, `defaults` are the values of a preset study. `check(p)` raises
+    UsageError for values that do not go together, before anything runs. `observables` are what the study measures, `cost`
+    what a run takes. `figure(path, frame=-1)` draws a finished run folder, `film(path)` films it. `report` (a
+    `postproc.campaign.planned.Report`) holds what papers claim, and the figures on which campaigns test that. `constants`,
+    {name: Constant}, go into every run folder. `needs_yade=False` lets campaigns run it in plain Python. `family` is the
+    name of the study of which this one is a preset; by itself its own name.
+    """
+
+    name: str
+    parameters: type
+    presets: dict
+    run: Callable
+    observables: tuple = ()
+    cost: Optional[Cost] = None
+    check: Callable = nothing_to_check
+    figure: Optional[Callable] = None
+    film: Optional[Callable] = None
+    report: Any = None
+    constants: dict = field(default_factory=dict)
+    needs_yade: bool = True
+    defaults: dict = field(default_factory=dict)
+    family: str = ""
+
+    def __post_init__(self):
+        object.__setattr__(self, "family", self.family or self.name)
+        self.check_keys()
+        names = [observable.name for observable in self.observables]
+        headlines = [observable.name for observable in self.observables if observable.headline]
+        if len(set(names)) < len(names):
+            raise ValueError(f"study {self.name}: observables must have different names, got {', '.join(names)}")
+        if names and len(headlines) != 1:
+            raise ValueError(
+                f"study {self.name}: one observable must be the headline, got {', '.join(headlines) or 'none'}"
+            )
+
+    def check_keys(self):
+        """ValueError unless presets and defaults speak of keys of the class of parameters."""
+        if not (isinstance(self.parameters, type) and issubclass(self.parameters, StudyParameters)):
+            raise ValueError(f"study {self.name}: parameters must be a class derived from StudyParameters")
+        if not self.presets:
+            raise ValueError(f"study {self.name}: presets must name at least one scale")
+        for part, values in {**self.presets, "defaults": self.defaults}.items():
+            unknown = sorted(set(values) - set(self.parameters.__fields__))
+            if unknown:
+                raise ValueError(f"study {self.name}: {part} sets {', '.join(unknown)}, which are no keys of its own")
+
+    @property
+    def headline(self):
+        """The `Observable` that the study is made for; None for a study without observables."""
+        return next((observable for observable in self.observables if observable.headline), None)
+
+    @property
+    def levers(self):
+        """{key: Lever} of the parameters that trade accuracy for speed."""
+        return self.parameters.levers()
+
+    def preset(self, name, **defaults):
+        """Return the same study under another name, with values of its own that a user may still change."""
+        return dataclasses.replace(self, name=name, defaults={**self.defaults, **defaults})
+
+    def usual(self, scale):
+        """Return the parameters of a run of that scale if nothing else is given."""
+        return self.parameters(**{**self.defaults, **self.presets[scale], "scale": scale})
+
+
+def observables(system, headline, names):
+    """Return `Observable`s of names, parted by spaces, that `postproc.quantities` explains, with its units and meanings."""
+    known = quantities.QUANTITIES["summary"]
+    units = {name: quantities.unit_of("summary", name, system) or "" for name in names.split()}
+    return tuple(Observable(name, unit, known[name].meaning, name == headline) for name, unit in units.items())
+
+
+def loaded(path):
+    """Return the `Study` that the file `path` makes, without running it; UsageError if it makes none.
+
+    The file is imported under a name other than `__main__`, and finds the modules beside it.
+    """
+    path = Path(path).resolve()
+    spec = importlib.util.spec_from_file_location(f"study_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # where pydantic looks up the types that a class of parameters names
+    sys.path.insert(0, str(path.parent))
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):  # YADE's greeting
+            spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(path.parent))
+    study = getattr(module, NAME, None)
+    if not isinstance(study, Study):
+        raise UsageError(f"{path} makes no {NAME}, so it is not a study; see 'A study of your own' in README.md")
+    return study
+
+
+def house():
+    """Return {name: file} of the studies of this checkout, sorted; empty where the package is installed without them."""
+    folder = Path(__file__).resolve().parents[2] / "studies"
+    return {path.stem: path for path in sorted(folder.glob("[!_]*.py")) if path.stem not in NO_STUDIES}
+
+
+def duration(seconds):
+    """Return a duration in words: "40 s", "12 min", "3.5 h", "12 days"."""
+    for unit, size in (("days", 86400), ("h", 3600), ("min", 60)):
+        if seconds >= 2 * size:
+            number = seconds / size
+            return f"{number:.1f} {unit}" if number < 10 else f"{number:.0f} {unit}"
+    return f"{math.ceil(seconds)} s"
