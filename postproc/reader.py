@@ -1,14 +1,12 @@
 """Open a run folder: parameters, provenance, time series, frames of the bed and the intruder, as NumPy arrays with units."""
 
 import contextlib
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
 
-from ..run_data import UNREADABLE
+from .. import run_data, run_file, summary_file
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
 INTRUDER = -1  # in a contact's `i` or `j`; what is below stands for flat walls
@@ -119,30 +117,30 @@ class Run:
     def __init__(self, path):
         self.path = Path(path)
         try:
-            with h5py.File(self.path / "run.h5", "r", libver="latest", swmr=True) as file:
-                self.series = read_series(file.get("series", {}))
-                self.units = {name: dataset.attrs.get("unit", "-") for name, dataset in file.get("series", {}).items()}
+            with run_file.opened(self.path / run_file.NAME, growing=True) as file:
+                self.series, self.units = run_data.series_in(file)
                 merged = "state" in file.attrs
-            about = self.path / ("run.h5" if merged else "about.h5")
-            with h5py.File(about, "r") as file:  # in a growing folder parameters have a file of their own
-                self.study, self.state = str(file.attrs["study"]), str(file.attrs["state"])
-                self.family = str(file.attrs.get("family", self.study))
-                self.parameters = {name: plain(dataset[()]) for name, dataset in file["parameters"].items()}
-                self.units.update({name: dataset.attrs["unit"] for name, dataset in file["parameters"].items()})
-                self.constants = {name: plain(dataset[()]) for name, dataset in file.get("constants", {}).items()}
-                self.provenance = {name: plain(value) for name, value in file["provenance"].attrs.items()}
+            name = run_file.NAME if merged else run_file.ABOUT
+            with run_file.opened(self.path / name, growing=True) as file:
+                about = run_file.read_about(file)
                 self.frame_names = sorted(file.get("frames", {}), key=int)
+            self.study, self.state = about.attributes["study"], about.attributes["state"]
         except FileNotFoundError:
             raise RunError(f"{path} is not a run folder: it holds no run.h5") from None
-        except UNREADABLE as error:
+        except run_data.UNREADABLE as error:
             raise RunError(f"{path} cannot be read as a run: {' '.join(str(error).split())}") from None
+        self.family = about.attributes.get("family", self.study)
+        self.parameters = {name: stored.value for name, stored in about.parameters.items()}
+        self.constants = {name: stored.value for name, stored in about.constants.items()}
+        self.units.update({name: stored.unit for name, stored in about.parameters.items()})
+        self.provenance = about.provenance
 
     @property
     def summary(self):
         """Content of summary.json as a dict; empty for a run that did not end well."""
-        file = self.path / "summary.json"
+        file = self.path / summary_file.NAME
         try:
-            return json.loads(file.read_text()) if file.exists() else {}
+            return summary_file.read(self.path) if file.exists() else {}
         except (OSError, ValueError) as error:
             raise RunError(f"{file} cannot be read: {' '.join(str(error).split())}") from None
 
@@ -150,9 +148,9 @@ class Run:
     def opened(self):
         """Open run.h5 for a block; RunError where it cannot be read."""
         try:
-            with h5py.File(self.path / "run.h5", "r") as file:
+            with run_file.opened(self.path / run_file.NAME) as file:
                 yield file
-        except UNREADABLE as error:
+        except run_data.UNREADABLE as error:
             raise RunError(f"{self.path / 'run.h5'} cannot be read: {' '.join(str(error).split())}") from None
 
     def frame(self, number=-1):
@@ -160,43 +158,23 @@ class Run:
         if not -len(self.frame_names) <= number < len(self.frame_names):
             raise RunError(f"{self.path} holds {len(self.frame_names)} frames; there is no frame {number}")
         with self.opened() as file:
-            group = file["frames"][self.frame_names[number]]
-            contacts, body = ({n: d[()] for n, d in group.get(part, {}).items()} for part in ("contacts", "intruder"))
-            grains = {name: dataset[()] for name, dataset in group.items() if isinstance(dataset, h5py.Dataset)}
-            return Frame(float(group.attrs["t"]), grains, contacts, body, plain(group.attrs.get("period", 0.0)))
+            return Frame(*run_file.read_frame(file["frames"][self.frame_names[number]]))
 
     def group(self, name):
         """Return the datasets of another group (`intruder`, `fields/…`) as a dict of arrays; empty if it is not there."""
         with self.opened() as file:
-            return {
-                key: dataset[()] for key, dataset in file.get(name, {}).items() if isinstance(dataset, h5py.Dataset)
-            }
+            return run_file.arrays_in(file.get(name, {}))
 
     def names(self, name):
         """Return the names of the groups below another group (`fields`), sorted; empty if it is not there."""
-        with h5py.File(self.path / "run.h5", "r") as file:
-            return sorted(key for key, item in file.get(name, {}).items() if isinstance(item, h5py.Group))
+        with self.opened() as file:
+            return run_file.groups_in(file.get(name, {}))
 
     def labels(self, name):
         """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""
         with self.opened() as file:
-            if name not in file:
-                return {}, {}
-            units = {key: item.attrs["unit"] for key, item in file[name].items() if "unit" in item.attrs}
-            return units, {key: plain(value) for key, value in file[name].attrs.items()}
+            return run_file.labels_in(file[name]) if name in file else ({}, {})
 
     def at(self, t, *names):
         """Return the named series at time `t`, interpolated linearly."""
         return [float(np.interp(t, self.series["t"], self.series[name])) for name in names]
-
-
-def read_series(group):
-    """Return {name: 1D array} of an HDF5 group, all as long as the shortest (a run may have died between two)."""
-    rows = min([len(dataset) for dataset in group.values()], default=0)
-    return {name: dataset[:rows] for name, dataset in group.items()}
-
-
-def plain(value):
-    """Return an HDF5 scalar as Python's number or text; an array stays one."""
-    value = value.item() if isinstance(value, np.generic) else value
-    return value.decode() if isinstance(value, bytes) else value

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from ... import summary_file
 from ...campaign import plan_json
 from ..measured import birge_ratio
 from ..reader import Run, RunError
@@ -73,7 +74,7 @@ class Campaign:
                 print(f"campaign: {error}; it is left out", file=sys.stderr)
             return None
         keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
-        values, _ = parted(run.summary)
+        values, _ = summary_file.parted(run.summary)
         measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items() if keys.get(k) != v}
         facts = {fact: run.provenance.get(fact) for fact in FACTS}
         return {"run": planned["name"], "sweeps": " ".join(planned["sweeps"]), **keys, **measured, **facts}
@@ -87,7 +88,7 @@ class Campaign:
         """Return {column: unit} of a run's keys and quantities; pure numbers and words are left out."""
         run = self.run(name)
         keys = {key: run.units[key] for key in run.parameters if key not in NOT_IN_TABLE}
-        _, told = parted(run.summary)
+        _, told = summary_file.parted(run.summary)
         told.update({f"{key}_measured": unit for key, unit in told.items() if key in keys})
         return {column: unit for column, unit in {**keys, **told}.items() if unit not in ("-", "")}
 
@@ -117,9 +118,3 @@ class Campaign:
 def sortable(column):
     """Return a column as it can be sorted: one that holds words and numbers (`auto` beside 60) by its text."""
     return column.astype(str) if len(set(column.map(lambda value: isinstance(value, str)))) > 1 else column
-
-
-def parted(summary):
-    """Return (quantities, {quantity: unit}) of the content of a summary.json."""
-    units = {key.removesuffix("_unit"): value for key, value in summary.items() if key.endswith("_unit")}
-    return {key: value for key, value in summary.items() if not key.endswith("_unit")}, units

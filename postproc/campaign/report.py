@@ -76,10 +76,16 @@ def settings(campaign):
 
 def cost(table):
     """Return in words what the runs of a table cost, on which processors, by which code."""
-    steps = (table["steps"] * table["n_grains"]).sum()
     processors = ", ".join(sorted(set(table["cpu"].dropna())))
     versions = ", ".join(sorted(set(table["code_version"].dropna())))
-    return f"{core_seconds(table):.0f} core-seconds, {steps:.3g} particle-steps, on {processors}; code {versions}"
+    return f"{core_seconds(table):.0f} core-seconds, {work(table)}, on {processors}; code {versions}"
+
+
+def work(table):
+    """Return in words the work of the runs of a table: particle-steps, or of a study without grains its steps."""
+    if "n_grains" in table:
+        return f"{(table['steps'] * table['n_grains']).sum():.3g} particle-steps"
+    return f"{table['steps'].sum():.3g} steps"
 
 
 def core_seconds(table):

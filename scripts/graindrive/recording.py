@@ -64,7 +64,7 @@ class Frames:
         self.folder.frame(t, *self.picture())
 
 
-def load_stage(folder, march, names):
+def load_stage(folder, march, names=()):
     """Have a `March` take up where the resumed run of `folder` goes on; return the facts of its `stage` by these names.
 
     UsageError for a checkpoint that this version cannot go on from; the remains stay as they are.
@@ -97,7 +97,7 @@ def announce(folder, *, grains, dt, ratio, unit, also=""):
     print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
-def run_sampled(folder, march, steps, block, sample, *, track, label, frames=None, stage=None):
+def run_sampled(folder, march, steps, block, sample, *, label, track=None, frames=None, stage=None):
     """Have a `March` go `steps` steps from the run's start, calling `sample(done)` after every `block`; return the steps done.
 
     A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too; of one that was, the march stands
@@ -111,7 +111,8 @@ def run_sampled(folder, march, steps, block, sample, *, track, label, frames=Non
 
     def save(place):
         march.save(place)
-        track.save(place)
+        if track is not None:
+            track.save(place)
 
     def after_block(done):
         ended = sample(first + done)

@@ -199,10 +199,15 @@ def read_series(path, rows=None):
     `rows` cuts the series; without it they are as long as the shortest, since death may strike between two of them.
     """
     with h5py.File(path, "r", libver="latest", swmr=True) as file:
-        group = file.get("series", {})
-        units = {name: dataset.attrs["unit"] for name, dataset in group.items()}
-        rows = min([len(dataset) for dataset in group.values()], default=0) if rows is None else rows
-        return {name: dataset[:rows] for name, dataset in group.items()}, units
+        return series_in(file, rows)
+
+
+def series_in(file, rows=None):
+    """Return what `read_series` does of an open file."""
+    group = file.get("series", {})
+    units = {name: dataset.attrs.get("unit", "-") for name, dataset in group.items()}
+    rows = min([len(dataset) for dataset in group.values()], default=0) if rows is None else rows
+    return {name: dataset[:rows] for name, dataset in group.items()}, units
 
 
 def merge(target, series, items, describe):

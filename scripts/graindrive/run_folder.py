@@ -3,14 +3,13 @@
 What each state of it on disk means to the next call stands in `run_remains.py`.
 """
 
-import json
 import math
 import sys
 import time
 
 import numpy as np
 
-from . import checkpoint, exports, run_data, run_place, run_remains, signals, whole_files
+from . import checkpoint, exports, run_data, run_file, run_place, run_remains, signals, summary_file
 from .errors import Interrupted, UsageError, is_full, one_line
 from .postproc import quantities
 from .provenance import provenance
@@ -62,11 +61,9 @@ class RunFolder:
         contacts = contacts or {}
         if "z" in grains:
             contacts = quantities.of_spheres(contacts, self.parameters.unit_system)
-        parts = {"contacts": contacts, "intruder": intruder or {}}
-        inner = {f"{part}/{name}": array for part, columns in parts.items() for name, array in columns.items()}
         self.write(
-            f"frames/{self.frames + 1:04d}",
-            {**grains, **inner},
+            run_file.frame_group(self.frames + 1),
+            run_file.frame_arrays(grains, contacts, intruder or {}),
             t=float(t),
             period=period if np.ndim(period) else float(period),
         )
@@ -197,7 +194,7 @@ class RunFolder:
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
         own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
-        whole_files.write_text(self.path / "summary.json", json.dumps(told, indent=2, allow_nan=False) + "\n")
+        summary_file.write(self.path, told)
         self.finish_data("complete")
         run_remains.draw(self.path, self.figure, self.parameters.exports)
         with run_place.held(self.out.parent):
@@ -233,19 +230,19 @@ class RunFolder:
         run_data.merge(self.path / "run.h5", series, items, lambda file: self.describe(file, state))
 
     def describe(self, file, state):
-        """Write parameters with units, and provenance, into an open HDF5 file."""
-        file.attrs.update(state=state, study=self.study, family=self.family, digest=self.parameters.digest())
+        """Write what the run is, parameters, constants and provenance into an open HDF5 file."""
+        attributes = dict(state=state, study=self.study, family=self.family, digest=self.parameters.digest())
         if self.resumed:
-            file.attrs[checkpoint.SOURCE] = self.resumed["remains"].name
-        for key, value in self.parameters.taken().items():
-            dataset = file.require_group("parameters").create_dataset(key, data="auto" if value is None else value)
-            dataset.attrs["auto"] = getattr(self.parameters, key) is None
-            dataset.attrs["unit"] = self.parameters.unit(key)
-            dataset.attrs["meaning"] = self.parameters.__fields__[key].field_info.description or ""
-        for name, constant in self.constants.items():
-            dataset = file.require_group("constants").create_dataset(name, data=constant.value)
-            dataset.attrs.update(unit=constant.unit, meaning=constant.meaning)
-        file.require_group("provenance").attrs.update(self.provenance)
+            attributes[checkpoint.SOURCE] = self.resumed["remains"].name
+        constants = {name: run_file.Described(c.value, c.unit, c.meaning) for name, c in self.constants.items()}
+        run_file.write_about(file, run_file.About(attributes, self.parameters_described(), constants, self.provenance))
+
+    def parameters_described(self):
+        """Return {key: Described} of the parameters, with the values that are taken for `auto`."""
+        p = self.parameters
+        meanings = {key: field.field_info.description or "" for key, field in p.__fields__.items()}
+        taken = p.taken().items()
+        return {key: run_file.Described(v, p.unit(key), meanings[key], getattr(p, key) is None) for key, v in taken}
 
     def close(self):
         """Close the files that are open for writing, and let go of the lock."""

@@ -2,14 +2,11 @@
 
 import contextlib
 import fcntl
-import json
 import os
 import re
 from pathlib import Path
 
-import h5py
-
-from . import whole_files
+from . import run_file, summary_file, whole_files
 from .errors import UsageError, one_line
 from .run_data import UNREADABLE
 
@@ -103,19 +100,11 @@ def set_aside(out):
 def stored_digest(path):
     """Return the digest of the parameters of the complete run in folder `path`; None if there is no such run."""
     try:
-        with h5py.File(path / "run.h5", "r") as file:
-            complete = file.attrs["state"] == "complete" and read_summary(path) is not None
-            return str(file.attrs["digest"]) if complete else None
-    except UNREADABLE:
-        return None
-
-
-def read_summary(path):
-    """Return the dict in summary.json; raises OSError or ValueError where there is none."""
-    summary = json.loads((path / "summary.json").read_text(encoding="utf-8"))
-    if not isinstance(summary, dict):
-        raise ValueError("it holds no quantities")
-    return summary
+        if run_file.attribute(path / run_file.NAME, "state") == "complete" and summary_file.read(path) is not None:
+            return run_file.attribute(path / run_file.NAME, "digest")
+    except (OSError, ValueError):
+        pass
+    return None
 
 
 def damage(path):
@@ -123,16 +112,15 @@ def damage(path):
 
     All of `run.h5` is read: HDF5 finds what is cut or torn only there.
     """
-    if not (path / "run.h5").is_file():
+    if not (path / run_file.NAME).is_file():
         return None
-    name = "run.h5"
+    name = run_file.NAME
     try:
-        with h5py.File(path / name, "r") as file:
-            if file.attrs["state"] != "complete":
-                return None
-            file.visititems(lambda _, item: item[()] is None if isinstance(item, h5py.Dataset) else None)
-        name = "summary.json"
-        read_summary(path)
+        if run_file.read_attribute(path / name, "state") != "complete":
+            return None
+        run_file.read_through(path / name)
+        name = summary_file.NAME
+        summary_file.read(path)
     except UNREADABLE as error:
         return f"{path / name} cannot be read ({one_line(error)})"
     return None
@@ -140,23 +128,21 @@ def damage(path):
 
 def difference(run):
     """Return in words the first parameter in which the stored run differs: " (period=4.0 there)"."""
-    with h5py.File(run.out / "run.h5", "r") as file:
-        for key, value in run.parameters.identity().items():
-            if key not in run.parameters.__fields__:  # what a file that a parameter names holds
-                continue
-            there, asked = stored_value(file, key), "auto" if value is None else value
-            if asked not in there:
-                return f" ({key}={there[0]} there, {key}={asked} asked for)"
+    stored = run_file.parameters_in(run.out / run_file.NAME)
+    for key, value in run.parameters.identity().items():
+        if key not in run.parameters.__fields__:  # what a file that a parameter names holds
+            continue
+        there, asked = values_of(stored.get(key)), "auto" if value is None else value
+        if asked not in there:
+            return f" ({key}={there[0]} there, {key}={asked} asked for)"
     return " (a file that they name has changed)"
 
 
-def stored_value(file, key):
-    """Return the value of a parameter in an open `run.h5`; behind it "auto" where it was taken for that."""
-    if f"parameters/{key}" not in file["/"]:
+def values_of(stored):
+    """Return the value of a parameter in a run folder, `Described`, and behind it "auto" where it was taken for that."""
+    if stored is None:
         return ("nothing",)
-    dataset = file[f"parameters/{key}"]
-    value = dataset.asstr()[()] if h5py.check_string_dtype(dataset.dtype) else dataset[()]
-    return (value, "auto") if dataset.attrs.get("auto", False) else (value,)
+    return (stored.value, "auto") if stored.auto else (stored.value,)
 
 
 def take_lock(part):

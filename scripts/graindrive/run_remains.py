@@ -26,7 +26,7 @@ import sys
 
 import h5py
 
-from . import checkpoint, exports, run_data, run_place, whole_files
+from . import checkpoint, exports, run_data, run_file, run_place, whole_files
 from .errors import UsageError, one_line
 from .parameters import known_formats
 
@@ -77,9 +77,8 @@ def say(run, words):
 def finish_killed(run, part):
     """Finish a part that was complete; False after a line that says why it cannot be."""
     try:
-        with h5py.File(part / "run.h5", "r") as file:
-            digest, study = str(file.attrs["digest"]), str(file.attrs["study"])
-            formats = formats_of(file["parameters"])
+        digest, study = (run_file.read_attribute(part / run_file.NAME, name) for name in ("digest", "study"))
+        formats = formats_of(run_file.parameters_in(part / run_file.NAME))
         draw(part, run.figure if study == run.study else None, formats)
         take_name(part, run.out, digest)
         say(run, f"a killed run was complete but for its name; it is in {run.out} now")
@@ -138,10 +137,10 @@ def draw(part, figure, formats):
     exports.write(part, formats)
 
 
-def formats_of(group):
-    """Return the formats of `exports` that the parameters in a `run.h5` ask for."""
-    asked = group["export"].asstr()[()] if "export" in group else ""
-    return known_formats(asked + ",vtk" * bool(group["vtk"][()]))
+def formats_of(stored):
+    """Return the formats of `exports` that the parameters in a `run.h5`, {key: Described}, ask for."""
+    asked = stored["export"].value if "export" in stored else ""
+    return known_formats(asked + ",vtk" * bool(stored["vtk"].value))
 
 
 def take_name(part, out, digest):
@@ -183,20 +182,13 @@ def replaced_by(part, out):
 
 def was_to_resume(part):
     """True if the run whose gathered `run.h5` is in `part` was given resume=1."""
-    try:
-        with h5py.File(part / "run.h5", "r") as file:
-            return bool(file["parameters/resume"][()])
-    except run_data.UNREADABLE:
-        return False
+    resume = run_file.parameters_in(part / run_file.NAME).get("resume")
+    return resume is not None and bool(resume.value)
 
 
 def attribute(folder, name):
     """Return an attribute of the `run.h5` in a folder as text; None where there is none."""
-    try:
-        with h5py.File(folder / "run.h5", "r", libver="latest", swmr=True) as file:
-            return str(file.attrs[name])
-    except run_data.UNREADABLE:
-        return None
+    return run_file.attribute(folder / run_file.NAME, name)
 
 
 def reach(folder):

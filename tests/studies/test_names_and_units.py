@@ -1,6 +1,5 @@
 """Every name that a smoke run of a study leaves is explained in the table of names, with the unit that stands beside it."""
 
-import importlib
 import json
 from pathlib import Path
 
@@ -9,9 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from graindrive import headless
 from graindrive.postproc import quantities
 from graindrive.postproc.campaign.folder import Campaign
-from graindrive.run_folder import RunFolder
+from graindrive.postproc.reader import Run
+from graindrive.study import loaded
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 RUNS = {
@@ -24,23 +25,25 @@ RUNS = {
 }
 NO_UNIT_OF_A_STUDY = (
     "parameters",
+    "constants",
     "provenance",
 )  # they carry units and meanings of their own, or are explained by their names
 
 
+def study_of(name):
+    """Return the study of a name of RUNS, or of a run folder."""
+    return loaded(STUDIES / f"{name.split(',')[0]}.py")
+
+
 @pytest.fixture(scope="module", params=RUNS)
 def run(request, tmp_path_factory):
-    """A finished run: (its path, its system of units)."""
+    """A finished run: (its path, its system of units, its keys)."""
     patch, place = pytest.MonkeyPatch(), tmp_path_factory.mktemp("runs")
     patch.setenv("GRAINDRIVE_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
-    patch.syspath_prepend(str(STUDIES))
-    name = request.param.split(",")[0]
-    study = importlib.import_module(name)
-    parameters = {"wiggle": "WiggleParameters", "magnus": "MagnusParameters"}[name]
-    keys = {**study.PRESETS["smoke"], **RUNS[request.param], "out": str(place / "run")}
-    p = getattr(study, parameters)(**keys)
-    with RunFolder(p, study=name) as folder:
-        study.run(p, folder)
+    study = study_of(request.param)
+    keys = {**study.presets["smoke"], **RUNS[request.param], "out": str(place / "run")}
+    p = study.parameters(**keys)
+    headless.carry_out(study, p)
     patch.undo()
     return place / "run", p.unit_system, keys
 
@@ -111,3 +114,13 @@ def test_every_column_of_a_campaign_s_table_is_a_key_a_quantity_or_in_the_table(
         table["amplitude_unit"].iloc[0] == ("sqrt(g d)" if keys.get("drive") else "d") if "amplitude" in table else True
     )
     assert pd.api.types.is_numeric_dtype(table["wall_s"]) and np.isfinite(table["wall_s"]).all()
+
+
+def test_a_study_s_observables_and_constants_stand_in_its_run_folder_with_their_units(run):
+    path, _, _ = run
+    found, summary = Run(path), json.loads((path / "summary.json").read_text())
+    study = study_of(found.study)
+    assert study.observables and found.family == study.family
+    assert {o.name: summary[f"{o.name}_unit"] for o in study.observables} == {o.name: o.unit for o in study.observables}
+    assert found.constants == {name: constant.value for name, constant in study.constants.items()}
+    assert found.provenance["dt"] == found.constants["time_step"] * found.parameters["dt_factor"]

@@ -3,6 +3,7 @@
 import csv
 import json
 
+import h5py
 import numpy as np
 import pytest
 from made_up_runs import MadeUpMagnus, make_campaign
@@ -12,9 +13,10 @@ from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.magnus.campaign import REPORT
+from graindrive.postproc.magnus.figure import fields_of
 from graindrive.postproc.magnus.claims import drag_claims, speed_claims
 from graindrive.postproc.magnus.wake import wake_claims
-from graindrive.postproc.reader import RunError
+from graindrive.postproc.reader import Run, RunError
 from graindrive.study import house, loaded
 
 SPEEDS = dict(phi=[0.352, 0.818], v0=[0.25, 0.5, 1.0, 2.0])
@@ -86,6 +88,20 @@ def test_the_wake_counts_in_radii_of_the_body(folder, tmp_path):
     assert bent[1].measured.value == pytest.approx(2 * bent[0].measured.value, rel=1e-9)
     for small, large in hot:
         assert large.measured.value == pytest.approx(small.measured.value, abs=0.05)  # smoothing stays 0.5 d wide
+
+
+@pytest.mark.parametrize("constants", [{"d": 0.04}, {}])
+def test_lengths_count_in_the_grains_of_the_run(folder, constants):
+    """In the run's constant d; in a folder of an older version, which holds none, in what its way in m and in d tells."""
+    make_campaign(folder, MadeUpMagnus(), dict(fields={**SWEEPS["fields"], "spin_ratio": [0.0], "seed": [1]}))
+    (path,) = (folder / "runs").iterdir()
+    with h5py.File(path / "run.h5", "r+") as file:
+        x = file["fields/around/x"][()]
+        del file["constants"]
+        for name, value in constants.items():
+            file[f"constants/{name}"] = value
+        file["series/t"], file["series/travel"] = [1.0, 2.0], np.array([1.0, 2.0]) * 0.25 / 0.04
+    assert fields_of(Run(path)).x == pytest.approx(x / 0.04, rel=1e-15)
 
 
 def test_a_drag_that_does_not_rise_with_spin_is_reported(folder):

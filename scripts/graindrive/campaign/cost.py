@@ -2,7 +2,7 @@
 
 import statistics
 
-from ..run_place import read_summary
+from .. import summary_file
 from ..study import duration
 
 
@@ -32,5 +32,5 @@ def ratios(folder, plan, todo, estimate):
     """Return the measured over the estimated cost of each run that is there already."""
     left = {run.name for run in todo}
     done = [run for run in plan.runs if run.name not in left]
-    taken = [(run, read_summary(folder / "runs" / run.name).get("wall_s")) for run in done]
+    taken = [(run, summary_file.read(folder / "runs" / run.name).get("wall_s")) for run in done]
     return [seconds / estimate(run.parameters) for run, seconds in taken if seconds]

@@ -1,0 +1,144 @@
+"""What stands where in `run.h5`, written and read: what the run is, its parameters, constants and provenance, frames, groups.
+
+How the file grows during a run, and its time series, are `run_data`'s. postproc/README.md documents the layout.
+"""
+
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+
+from .run_data import UNREADABLE
+
+NAME, ABOUT = "run.h5", "about.h5"  # in a run folder; while a run grows its `About` has a file of its own
+PARTS_OF_FRAME = ("contacts", "intruder")
+
+
+class Described(NamedTuple):
+    """A number or word with its unit and meaning; `auto` says whether it was taken for a key that is `auto`."""
+
+    value: object
+    unit: str
+    meaning: str
+    auto: bool = False
+
+
+class About(NamedTuple):
+    """What a run is: attributes of the file (state, study, family, digest, …) and dicts of parameters, constants, provenance.
+
+    Parameters and constants are {name: Described}, provenance {name: plain value}.
+    """
+
+    attributes: dict
+    parameters: dict
+    constants: dict
+    provenance: dict
+
+
+def opened(path, growing=False):
+    """Open an HDF5 file for reading; `growing` for one that a run may be writing to."""
+    return h5py.File(path, "r", libver="latest", swmr=True) if growing else h5py.File(path, "r")
+
+
+# ---- what a run is ---------------------------------------------------------------------------------------------------
+
+
+def write_about(file, about):
+    """Write an `About` into an open HDF5 file."""
+    file.attrs.update(about.attributes)
+    for name, (value, unit, meaning, auto) in about.parameters.items():
+        dataset = file.require_group("parameters").create_dataset(name, data="auto" if value is None else value)
+        dataset.attrs.update(auto=auto, unit=unit, meaning=meaning)
+    for name, (value, unit, meaning, _) in about.constants.items():
+        dataset = file.require_group("constants").create_dataset(name, data=value)
+        dataset.attrs.update(unit=unit, meaning=meaning)
+    file.require_group("provenance").attrs.update(about.provenance)
+
+
+def read_about(file):
+    """Return the `About` in an open HDF5 file; KeyError where there is none. Files of older versions hold no constants."""
+    return About(
+        {name: plain(value) for name, value in file.attrs.items()},
+        {name: described(dataset) for name, dataset in file["parameters"].items()},
+        {name: described(dataset) for name, dataset in file.get("constants", {}).items()},
+        {name: plain(value) for name, value in file["provenance"].attrs.items()},
+    )
+
+
+def described(dataset):
+    """Return a scalar dataset as `Described`."""
+    attributes = dataset.attrs
+    meaning, auto = plain(attributes.get("meaning", "")), bool(attributes.get("auto", False))
+    return Described(plain(dataset[()]), plain(attributes.get("unit", "-")), meaning, auto)
+
+
+def read_attribute(path, name):
+    """Return an attribute of the file `path`, which may be growing, as text; raises one of UNREADABLE where there is none."""
+    with opened(path, growing=True) as file:
+        return str(file.attrs[name])
+
+
+def attribute(path, name):
+    """Return an attribute of the file `path`, which may be growing, as text; None where there is none."""
+    try:
+        return read_attribute(path, name)
+    except UNREADABLE:
+        return None
+
+
+def parameters_in(path):
+    """Return {key: Described} of the parameters that the file `path` holds; empty where it cannot be read."""
+    try:
+        with opened(path, growing=True) as file:
+            return {name: described(dataset) for name, dataset in file["parameters"].items()}
+    except UNREADABLE:
+        return {}
+
+
+def read_through(path):
+    """Read every dataset of the file `path`: HDF5 finds what is cut or torn only there. Raises one of UNREADABLE."""
+    with opened(path) as file:
+        file.visititems(lambda _, item: item[()] is None if isinstance(item, h5py.Dataset) else None)
+
+
+# ---- frames and other groups -----------------------------------------------------------------------------------------
+
+
+def frame_group(number):
+    """Return the name of the group of a frame, counted from 1."""
+    return f"frames/{number:04d}"
+
+
+def frame_arrays(grains, contacts, intruder):
+    """Return the arrays of a frame's group: the grains' by name, the others' as contacts/NAME and intruder/NAME."""
+    parts = zip(PARTS_OF_FRAME, (contacts, intruder))
+    inner = {f"{part}/{name}": array for part, columns in parts for name, array in columns.items()}
+    return {**grains, **inner}
+
+
+def read_frame(group):
+    """Return (t, grains, contacts, intruder, period) of a frame's HDF5 group; period 0 where an older version stored none."""
+    contacts, intruder = (arrays_in(group.get(part, {})) for part in PARTS_OF_FRAME)
+    return float(group.attrs["t"]), arrays_in(group), contacts, intruder, plain(group.attrs.get("period", 0.0))
+
+
+def arrays_in(group):
+    """Return {name: array} of the datasets that stand in a group, or in an empty dict."""
+    return {name: item[()] for name, item in group.items() if isinstance(item, h5py.Dataset)}
+
+
+def groups_in(group):
+    """Return the names of the groups that stand in a group, or in an empty dict, sorted."""
+    return sorted(name for name, item in group.items() if isinstance(item, h5py.Group))
+
+
+def labels_in(group):
+    """Return ({dataset: unit}, {attribute: value}) of a group; pure words have no unit."""
+    units = {name: item.attrs["unit"] for name, item in group.items() if "unit" in item.attrs}
+    return units, {name: plain(value) for name, value in group.attrs.items()}
+
+
+def plain(value):
+    """Return an HDF5 scalar as Python's number or text; an array stays one."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return value.decode() if isinstance(value, bytes) else value
