@@ -137,8 +137,10 @@ void MirrorOf<D>::sync()
 	for (std::size_t g = 0; g < map.grain_id.size(); ++g)
 		if (scene().bodies->exists(map.grain_id[g])) write_grain(g);
 	keep_walls();
+	const std::vector<Spring<D>> springs = stepper->springs();
 	engine.springs.clear();
-	for (const Spring<D>& s : stepper->springs()) {
+	engine.springs.reserve(springs.size() * (D == 2 ? 3 : 5));
+	for (const Spring<D>& s : springs) {
 		engine.springs.insert(engine.springs.end(), { Real(map.grain_id[s.first]), Real(map.grain_id[s.second]) });
 		if constexpr (D == 2)
 			engine.springs.push_back(s.slip);

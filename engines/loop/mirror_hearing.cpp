@@ -63,6 +63,7 @@ template <int D>
 void MirrorOf<D>::remember_what_is_written()
 {
 	written.clear();
+	written.reserve(map.grain_id.size());
 	for (const int id : map.grain_id) {
 		Written none;
 		std::memset(&none, 0, sizeof none);

@@ -66,6 +66,7 @@ template <int D>
 std::vector<Spring<D>> Stepper<D>::springs() const
 {
 	std::vector<Spring<D>> found;
+	found.reserve(pairs.counts().selected);
 	const auto add = [&](std::uint32_t a, std::uint32_t b, const Tangent<D>& slip) {
 		if (slip != Tangent<D>{}) found.push_back({ state.index_of[a], state.index_of[b], slip });
 	};

@@ -116,6 +116,7 @@ std::vector<Contact<D>> Stepper<D>::present_contacts()
 	const bool was_under_way = body_forces_known;
 	compute_body_forces();
 	std::vector<Contact<D>> found;
+	found.reserve(pairs.counts().selected);
 	if constexpr (D == 2) {
 		const double moved = std::exchange(drifted, 0);
 		pairs.with_all_forces([&] { found = contacts_in_memory(); });

@@ -8,7 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double reach_of_list = 0.2;  // how far from a surface grains are listed [d]
+constexpr double least_reach = 0.2;  // how far from a surface grains are listed [d]
 
 using geometry::cross;
 
@@ -35,14 +35,15 @@ bool Surfaces<D>::moved_by_hand()
 	return moved;
 }
 
-/// The order is that of grains, wherever they lie in memory.
+/// The order is that of grains, wherever they lie in memory. The list reaches twice as far as grains may come until the next selection,
+/// so that fast grains do not make it due at every step; which of them touch does not depend on it.
 template <int D>
 void Surfaces<D>::list(double to_come)
 {
 	if (!any()) return;
 	surface_way.resize(count(), 0);
-	const double reach = reach_of_list * state.typical_diameter;
 	if (largest_way + to_come + *std::max_element(surface_way.begin(), surface_way.end()) <= reach) return;
+	reach = std::max(least_reach * state.typical_diameter, 2 * to_come);
 	std::vector<SurfaceTouch<D>> listed;
 	auto known = state.touches.begin();
 	for (std::uint32_t s = 0; s < count(); ++s)
@@ -74,7 +75,7 @@ bool Surfaces<D>::may_touch(std::uint32_t s, std::uint32_t g) const
 	const Row<D>& row = state.rows[state.row_of[g]];
 	const Vec<D> point = body.to_frame(seen_from_solid(s, body, row.x));
 	const geometry::Bounds<D> box = solid.shape->bounds();
-	const double beyond = row.radius + reach_of_list * state.typical_diameter;
+	const double beyond = row.radius + reach;
 	for (int k = 0; k < D; ++k)
 		if (point[k] < box.low[k] - beyond || point[k] > box.high[k] + beyond) return false;
 	return true;

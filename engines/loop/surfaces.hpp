@@ -49,6 +49,7 @@ public:
 private:
 	State<D>& state;
 	const StepMotion<D>& motion;
+	double reach = 0;                               // of the list [m]
 	double largest_way = HUGE_VAL;                  // of any grain since the list was made, up to the last selection [m]
 	std::vector<double> surface_way;                // of each surface since then [m]
 	std::vector<geometry::RigidMotion<D>> left_at;  // solids, by the last step
