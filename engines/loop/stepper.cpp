@@ -110,6 +110,7 @@ void Stepper<D>::take_back_body_forces()
 	if (!body_forces_known) return;
 	pairs.put_back_early();
 	surfaces.take_back();
+	take_back_outside_forces();
 	body_forces_known = false;
 }
 
@@ -162,6 +163,7 @@ void Stepper<D>::look_before()
 		hand_outside_forces_over();
 		if (books) books->remember(pairs);
 	} catch (...) {
+		take_back_outside_forces();
 		failure = std::current_exception();
 	}
 }
@@ -173,8 +175,9 @@ void Stepper<D>::finish()
 	if (!body_forces_known) gather_body_forces();
 	moved_by_hand |= surfaces.moved_by_hand();  // since forces were computed
 	rigid.move();
-	bool sweep_has_done_it = false;
+	bool sweep_has_done_it = true;
 	if constexpr (D == 2) sweep_has_done_it = pairs.sweep_knows_outside();
+	handed_over.clear();
 	if (!sweep_has_done_it)
 		surfaces.kick_grains(
 			[&](std::uint32_t row, const Vec<D>& force, const Spin<D>& turning) { kick_grain(row, force, turning); });
@@ -226,9 +229,30 @@ void Stepper<2>::hand_outside_forces_over()
 	}
 }
 
+/// In space they are the first forces that a row adds up. A grain that is pressed on a surface would be carried far into it and back
+/// again if that force came after the sweep, and use up the way that its block has until the next selection.
 template <>
 void Stepper<3>::hand_outside_forces_over()
 {
+	take_back_outside_forces();
+	const auto add = [&](std::uint32_t row, const Vec<3>& force, const Vec<3>& turning) {
+		state.rows[row].force += force;
+		state.rows[row].turn += turning;
+		handed_over.push_back(row);
+	};
+	surfaces.kick_grains(add);
+	for (const Push<3>& push : state.pushes) {
+		const std::uint32_t row = state.row_of[push.grain];
+		add(row, push.force, push.torque / state.rows[row].radius);
+	}
+}
+
+template <int D>
+void Stepper<D>::take_back_outside_forces()
+{
+	if constexpr (D == 3)
+		for (const std::uint32_t row : handed_over) state.rows[row].force = state.rows[row].turn = {};
+	handed_over.clear();
 }
 
 template class Stepper<2>;

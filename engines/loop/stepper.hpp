@@ -128,6 +128,7 @@ private:
 	bool searching = false;
 	bool moved_by_hand = false;  // grains or solids have been put elsewhere: guards look at all at once
 	bool body_forces_known = false;
+	std::vector<std::uint32_t> handed_over;  // rows in space that have been told the forces of surfaces and pushes
 	bool laid_out_since_forces = false;
 	double drifted = 0;  // for how long grains have moved since their forces were computed [s]
 
@@ -141,6 +142,7 @@ private:
 	void look_before();
 	void finish();
 	void hand_outside_forces_over();
+	void take_back_outside_forces();
 	void kick_grain(std::uint32_t row, const Vec<D>& force, const Spin<D>& turning);
 	void gather_body_forces();
 

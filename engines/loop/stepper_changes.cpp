@@ -170,6 +170,7 @@ template <int D>
 void Stepper<D>::go_back_to(const State<D>& before)
 {
 	state = before;
+	handed_over.clear();
 	pairs.return_to_state();
 	surfaces.forget_list();
 	body_forces_known = false;
