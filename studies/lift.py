@@ -46,6 +46,7 @@ from graindrive.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.lift import figure, forces  # noqa: E402
+from graindrive.postproc.lift.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.yade_march import YadeMarch  # noqa: E402
 
@@ -466,6 +467,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=figure.draw,
+    report=REPORT,
     constants={
         "d": Constant(D, "m", "diameter of the grains"),
         "density": Constant(DENSITY, "kg/m^3", "of the grains"),

@@ -73,7 +73,7 @@ def run_on_grain_loop(material, gravity, between=(), springs=((), ()), **setting
 
 
 def run_on_yade_loop(material, gravity, between=(), springs=((), ())):
-    """Put YADE's own loop into O.engines, with the springs of an earlier scene: contacts are found in a step that takes no time."""
+    """Put YADE's own loop into O.engines, with the springs of an earlier scene, whose contacts a step of no time finds."""
     from yade import O
 
     require_one_image()
