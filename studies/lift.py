@@ -39,13 +39,14 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import dragged_body, engines, fields, grain_loop, headless, intruder, picture, progress  # noqa: E402
+from graindrive import dragged_body, engines, fields, headless, intruder, picture, progress  # noqa: E402
 from graindrive import recording, scene, space, sphere_bed  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.lift import figure, forces  # noqa: E402
+from graindrive.postproc.lift.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.yade_march import YadeMarch  # noqa: E402
 
@@ -245,17 +246,12 @@ def build(p, body, dt):
         space.set_velocity([*made["grains"], *made["lid"], made["base"]], (-p.speed, 0, 0))
     else:
         space.set_velocity([made["body"]], (p.speed, 0, 0))
-    space.run_on_grain_loop(
-        material(p),
-        gravity,
-        [*measures(p, body, made), *drives(p, made)],
-        (found["springs"], found["wall_springs"]),
-        precision=p.precision,
-        largestOverlap=p.largest_overlap,
-        threads=p.threads or sphere_bed.scene_threads(),
-    )
+    between, springs = [*measures(p, body, made), *drives(p, made)], (found["springs"], found["wall_springs"])
     if p.loop == "yade":
-        grain_loop.use_yade_loop()
+        space.run_on_yade_loop(material(p), gravity, between, springs)
+    else:
+        settings = dict(largestOverlap=p.largest_overlap, threads=p.threads or sphere_bed.scene_threads())
+        space.run_on_grain_loop(material(p), gravity, between, springs, precision=p.precision, **settings)
     if not p.bulk_gravity:
         space.load_all(made["lid"], sphere_bed.weight_on_lid(bed, lid))
     ends = {name: [int(made[name][0]), int(made[name][-1]) + 1] if made[name] else [0, 0] for name in ("grains", "lid")}
@@ -471,6 +467,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=figure.draw,
+    report=REPORT,
     constants={
         "d": Constant(D, "m", "diameter of the grains"),
         "density": Constant(DENSITY, "kg/m^3", "of the grains"),

@@ -1,8 +1,10 @@
 """Scenes of spheres in YADE: a box periodic in x and y, a base, a lid of heavy grains, a solid, and the loop that moves them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
-from . import engines, grain_loop, scene, surfaces
+from . import contact_springs, engines, grain_loop, scene, surfaces
 from .errors import UsageError
 
 
@@ -50,7 +52,9 @@ def yade_loop(material, gravity, between=()):
     phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=material.friction)
     O.engines = [
         w.ForceResetter(),
-        w.InsertionSortCollider([w.Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()], allowBiggerThanPeriod=True),  # endless solids
+        w.InsertionSortCollider(
+            [w.Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()], allowBiggerThanPeriod=True
+        ),  # endless solids
         w.InteractionLoop([w.Ig2_Sphere_Sphere_ScGeom(), engines.Ig2_Solid_Sphere_ScGeom()], [phys], [law]),
         *between,
         w.NewtonIntegrator(damping=0, gravity=tuple(gravity)),
@@ -66,6 +70,21 @@ def run_on_grain_loop(material, gravity, between=(), springs=((), ()), **setting
     remembered = dict(springs=[*map(float, springs[0])], wallSprings=[*map(float, springs[1])])
     periods = (O.cell.size[0], O.cell.size[1], 0)
     return grain_loop.use_grain_loop(periods=periods, dimensions=3, label="loop", **remembered, **settings)
+
+
+def run_on_yade_loop(material, gravity, between=(), springs=((), ())):
+    """Put YADE's own loop into O.engines, with the springs of an earlier scene, whose contacts a step of no time finds."""
+    from yade import O
+
+    require_one_image()
+    yade_loop(material, gravity)
+    contacts, dt, O.dt = O.engines[2], O.dt, 0
+    O.run(1, True)
+    O.dt = dt
+    engines.set_clock(O._sceneObj, 0, 0.0)
+    given = SimpleNamespace(dimensions=3, springs=[*map(float, springs[0])], wallSprings=[*map(float, springs[1])])
+    contact_springs.give_springs(contacts, given)
+    O.engines = [*O.engines[:-1], *between, O.engines[-1]]
 
 
 def require_one_image():

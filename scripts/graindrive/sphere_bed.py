@@ -20,9 +20,12 @@ BED_FRACTION = 0.59  # volume fraction with which the number of grains is reckon
 INSERTION_FRACTION = 0.33
 LARGEST_OVERLAP = 0.3  # [R] where settling is stopped: a tall column that lands presses its foot hard
 LOOK_EVERY = 100  # steps between two looks at a bed that comes to rest
-LOAD_ERROR = 5e-4  # of the weight, by which the forces on base and solid may miss it
-LOOKS_BORNE = 5  # looks, one after another, at which they must not
-MOST_LOOKS = 3000
+LOAD_ERROR = (
+    1e-3  # of the weight, by which the forces on base and solid may miss it, or the weight of a grain that still rolls
+)
+POURED_ERROR = 5e-3  # the same while a bed is poured
+LOOKS_BORNE = 3  # looks, one after another, at which they must not
+MOST_LOOKS = 1000
 MOST_GRAINS = 5_000_000
 
 
@@ -223,7 +226,8 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
         space.load_all(lids, weight_on_lid(bed, lid))
     O.dt = bed.dt
     mass = bed.material.density * bed.grain_volume
-    state = Swing(weight=total_weight(bed, ids, lids, gravity, lid))
+    weight = total_weight(bed, ids, lids, gravity, lid)
+    state = Swing(weight, max(LOAD_ERROR, mass * bed.gravity / weight) if lid else POURED_ERROR)
     unit = mass * bed.gravity * bed.d * len(ids)
     aim = Calming(lambda: loop.kineticEnergy / unit, bed.rest, "m g d per grain", round(fall_time / bed.dt))
 
@@ -248,17 +252,18 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
 
 
 class Swing:
-    """What is borne of a weight: the `error` over it, for how many looks it was `borne`, and whether it just passed the weight."""
+    """What is borne of a weight: the `error` over it, for how many looks it was `allowed`, whether it just passed the weight."""
 
-    def __init__(self, weight):
-        self.weight, self.error, self.borne, self.passes_the_weight = weight, -1.0, 0, False
+    def __init__(self, weight, allowed):
+        self.weight, self.allowed = weight, allowed
+        self.error, self.borne, self.passes_the_weight = -1.0, 0, False
 
     def see(self, force):
         """Note the force that is borne now."""
         error = force / self.weight - 1
         farthest = max(abs(error), abs(self.error))
-        self.borne = self.borne + 1 if farthest < LOAD_ERROR else 0
-        self.passes_the_weight = error * self.error <= 0 and farthest >= LOAD_ERROR
+        self.borne = self.borne + 1 if farthest < self.allowed else 0
+        self.passes_the_weight = error * self.error <= 0 and farthest >= self.allowed
         self.error = error
 
 

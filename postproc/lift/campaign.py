@@ -1,0 +1,66 @@
+"""Report of a lift campaign: Figs. 5, 8, 9, 11, 12 and 13 of Guillard, Forterre, Pouliquen, Phys. Fluids 26, 043301 (2014)."""
+
+from ..campaign.planned import PlannedFigure, Report
+from . import plots
+from .claims import depth_claims, diameter_claims, speed_claims, stress_claims
+
+TITLE = "Lift: drag and lift on a cylinder in a bed of spheres"
+SWEEPS = {
+    "depth": "several depths, by depth and by lid_density, with bulk_gravity 0 and 1",
+    "stress": "several lid_density, each with bulk_gravity 0 and 1",
+    "fields": "a few runs with fields=1",
+    "speed": "three speeds",
+    "diameter": "several cylinder_diameter, deep",
+}
+
+
+def no_claims(_campaign, _rows):
+    """A figure to look at."""
+    return []
+
+
+FIGURES = (
+    PlannedFigure(
+        "fig8",
+        "depth",
+        "Fig. 8: drag and lift against depth",
+        "Drag over P_0 D L and lift over buoyancy against the effective depth. Paper: C_d ≈ 10, with and without weight in the"
+        " bulk; lift saturates near 30 buoyancies, and is nothing without weight in the bulk.",
+        depth_claims,
+        plots.against_depth,
+    ),
+    PlannedFigure(
+        "fig11",
+        "stress",
+        "Figs. 11 and 12: stress by angle",
+        "Normal stress by angle from the direction of travel, and what weight in the bulk adds to it over ρgD.",
+        stress_claims,
+        plots.stress_by_angle,
+    ),
+    PlannedFigure(
+        "fig9",
+        "fields",
+        "Figs. 9 and 13: fields around the cylinder",
+        "Pressure over P_0, and speed over U_0 with streamlines in the cylinder's frame.",
+        no_claims,
+        plots.around_body,
+    ),
+    PlannedFigure(
+        "speed",
+        "speed",
+        "U_0: drag against speed",
+        "The paper does not give U_0; drag must not depend on it.",
+        speed_claims,
+        plots.against("speed", "$U_0$ [m/s]", "drag_coefficient", "$C_d$"),
+    ),
+    PlannedFigure(
+        "fig5",
+        "diameter",
+        "Fig. 5: lift against diameter",
+        "Lift over buoyancy against D/d. Paper: it falls towards 20.",
+        diameter_claims,
+        plots.against("cylinder_diameter", "$D/d$", "lift_over_buoyancy", "lift over buoyancy"),
+    ),
+)
+
+REPORT = Report("lift", TITLE, SWEEPS, FIGURES, pooled=("lift_over_buoyancy", "drag_coefficient"))
