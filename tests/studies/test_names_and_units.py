@@ -21,6 +21,7 @@ RUNS = {
     "magnus, shape": dict(
         width=24, height=20, travel=4, settle_travel=2, fields=False, shape="square", intruder_diameter=3
     ),
+    "lift": dict(width=16, height=13, depth=6.5, cylinder_diameter=2, travel=9, lid_density=30, fields=False, frames=2),
 }
 NO_UNIT_OF_A_STUDY = (
     "parameters",
@@ -36,7 +37,7 @@ def run(request, tmp_path_factory):
     patch.syspath_prepend(str(STUDIES))
     name = request.param.split(",")[0]
     study = importlib.import_module(name)
-    parameters = {"wiggle": "WiggleParameters", "magnus": "MagnusParameters"}[name]
+    parameters = {"wiggle": "WiggleParameters", "magnus": "MagnusParameters", "lift": "LiftParameters"}[name]
     keys = {**study.PRESETS["smoke"], **RUNS[request.param], "out": str(place / "run")}
     p = getattr(study, parameters)(**keys)
     with RunFolder(p, study=name) as folder:
