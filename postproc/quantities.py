@@ -97,7 +97,7 @@ QUANTITIES = {
         ),
         **of("velocity", v0="Magnus: the key V0"),
         **of("-", spin_ratio="Magnus: the key Omega = omega_0 R/V0", mu="the key"),
-        **of("force", drag="mean force on the body along -V", lift="mean force on the body along -omega x V; of the lift study upwards"),
+        **of("force", drag="mean force on the body along -V", lift="mean force on the body along -omega x V"),
         **of("torque", torque="mean torque on the body, counter-clockwise"),
         **of(
             "-",

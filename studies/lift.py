@@ -368,6 +368,7 @@ def run(p, folder):
         load_error=stage["load_error"],
         inertial_number=seen.inertial_number,
     )
+    folder.write("intruder", dict(outline=body.outline))
     record(p, folder, march, stage, seen)
 
 

@@ -85,7 +85,7 @@ def stress_claims(campaign, rows):
             "σ_n − σ_n(g = 0) over ρgD below less above, in front",
             "Fig. 12",
             "> 0",
-            asymmetry(campaign, rows),
+            difference,
             above(0),
         ),
     ]

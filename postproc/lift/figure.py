@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Circle
+from matplotlib.patches import Polygon
 
 from .. import fields
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, save
@@ -122,7 +122,7 @@ def draw_fields(figure, run, around):
 
 
 def draw_body(axes, run):
-    """The body about the origin: a circle of its height; other shapes are seen by the grains that they lack."""
-    if run.parameters["shape"] == "cylinder":
-        radius = run.summary["body_height"] / 2
-        axes.add_patch(Circle((0, 0), radius, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
+    """The section of an endless body about the origin; others are seen by the grains that they lack."""
+    outline = run.group("intruder")["outline"] / run.summary["grain_diameter"]
+    if len(outline):
+        axes.add_patch(Polygon(outline, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))

@@ -17,7 +17,8 @@ SPACING = 0.1  # d, of the grid in which a distance is sampled, unless its file 
 class DraggedBody:
     """A solid about its own origin, lengths in m: `surface`, corners `low` and `high` (3,) of the box around it, `volume`.
 
-    `endless` bodies go on along y and fill the box's breadth; their low and high there are half of it.
+    `endless` bodies go on along y and fill the box's breadth; their low and high there are half of it. `outline` (m, 2) are
+    corners x, z of their section; other bodies have none, (0, 2).
     """
 
     surface: object
@@ -25,6 +26,7 @@ class DraggedBody:
     high: np.ndarray
     volume: float
     endless: bool
+    outline: np.ndarray
 
     @property
     def height(self):
@@ -58,7 +60,9 @@ def cylinder(diameter, breadth):
     """Return an endless cylinder along y."""
     half = np.array([diameter / 2, breadth / 2, diameter / 2])
     made = surfaces.cylinder((0, 0, 0), (0, 1, 0), diameter / 2)
-    return DraggedBody(made, -half, half, np.pi * diameter**2 / 4 * breadth, True)
+    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    circle = diameter / 2 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return DraggedBody(made, -half, half, np.pi * diameter**2 / 4 * breadth, True, circle)
 
 
 def swept(shape, breadth, d):
@@ -68,7 +72,7 @@ def swept(shape, breadth, d):
     prism = surfaces.swept_outline(corners).placed(axis=(1, 0, 0), angle=np.pi / 2)  # y to z, z to -y
     (x_low, z_low), (x_high, z_high) = corners.min(axis=0), corners.max(axis=0)
     low, high = np.array([x_low, -breadth / 2, z_low]), np.array([x_high, breadth / 2, z_high])
-    return DraggedBody(prism, low, high, outline.area * d**2 * breadth, True)
+    return DraggedBody(prism, low, high, outline.area * d**2 * breadth, True, corners)
 
 
 def sampled_from(path, d):
@@ -89,7 +93,9 @@ def sampled_from(path, d):
     depth = -np.asarray(told["distance"](points), float) / spacing
     inside = points[depth > -0.5]
     volume = np.clip(0.5 + depth, 0, 1).sum() * spacing**3
-    return DraggedBody(made, inside.min(axis=0) * d, inside.max(axis=0) * d, float(volume * d**3), False)
+    return DraggedBody(
+        made, inside.min(axis=0) * d, inside.max(axis=0) * d, float(volume * d**3), False, np.zeros((0, 2))
+    )
 
 
 @functools.lru_cache(maxsize=None)

@@ -22,6 +22,7 @@ RUNS = {
     "magnus, shape": dict(
         width=24, height=20, travel=4, settle_travel=2, fields=False, shape="square", intruder_diameter=3
     ),
+    "lift": dict(width=16, height=13, depth=6.5, cylinder_diameter=2, travel=9, lid_density=30, fields=False, frames=2),
 }
 NO_UNIT_OF_A_STUDY = (
     "parameters",
