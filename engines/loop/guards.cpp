@@ -36,9 +36,6 @@ void check_grain(const Scene<D>& scene, std::size_t i)
 		"mass must be positive, and finite for a free grain, got ", g.mass, " in grain ", i);
 }
 
-bool is_positive(double inertia) { return inertia > 0; }
-bool is_positive(const Vec<3>& inertia) { return inertia[0] > 0 && inertia[1] > 0 && inertia[2] > 0; }
-
 /// In space a body that may turn about some axes of the world and not about others is known where one is left, or where it is a ball.
 void check_turning(const RigidBody<2>&, std::size_t) {}
 void check_turning(const RigidBody<3>& body, std::size_t b)

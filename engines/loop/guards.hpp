@@ -18,6 +18,10 @@ std::string sentence(const Words&... words)
 	return out.str();
 }
 
+/// True if a body may turn about every axis: all its moments of inertia are positive.
+inline bool is_positive(double inertia) { return inertia > 0; }
+inline bool is_positive(const Vec<3>& inertia) { return inertia[0] > 0 && inertia[1] > 0 && inertia[2] > 0; }
+
 /// @throws std::invalid_argument naming the rule, the number and the way out
 template <int D>
 void check_scene(const Scene<D>& scene);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engines/loop/checkpoint.hpp"
+#include "engines/loop/guards.hpp"
 #include "engines/solids/Solid.hpp"
 
 namespace graindrive::loop {
@@ -48,9 +49,6 @@ Grain<D> grain(const yade::Body& body, double radius, double mass, int owner)
 	const State& s = *body.state;
 	return { in_loop<D>(s.pos), in_loop<D>(s.vel), spin_in_loop<D>(s.angVel), radius, mass, owner };
 }
-
-bool is_positive(double inertia) { return inertia > 0; }
-bool is_positive(const Vec<3>& inertia) { return inertia[0] > 0 && inertia[1] > 0 && inertia[2] > 0; }
 
 }  // namespace
 

@@ -16,7 +16,7 @@ def draw(path, frame=-1):
     run = Run(path)
     around = fields_of(run)
     with plt.rc_context(STYLE):
-        columns = [1.0, 1.0] if around else [1.0]
+        columns = [1.0, 0.62] if around else [1.0]  # maps are square
         figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 5.4), layout="constrained")
         figure.suptitle(title(run), fontsize=8)
         parts = np.atleast_1d(figure.subfigures(1, len(columns), width_ratios=columns))
@@ -56,7 +56,9 @@ def draw_forces(axes, run):
     axes.axvspan(found["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
     axes.axhline(0, color=BLACK, linewidth=0.4)
     axes.set(xlabel="travel  [$d$]", ylabel="force", xlim=(0, travel[-1]))
-    axes.legend(loc="upper left", framealpha=0.8, edgecolor="none", handlelength=1.4)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
+    axes.legend(loc="upper left", ncols=2, frameon=False, handlelength=1, columnspacing=1, fontsize=6)
 
 
 def draw_stress(axes, run):

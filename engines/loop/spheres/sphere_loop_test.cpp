@@ -178,6 +178,29 @@ TEST(SphereLoop, energy_on_the_step_leaves_everything_as_it_was)
 	EXPECT_EQ(numbers(one), numbers(other));
 }
 
+/// Layers of spheres that slide over each other without a touch: neighbours part slowly, however fast the top is against the ground.
+TEST(SphereLoop, a_shear_is_searched_much_less_often_than_pairs_are_selected)
+{
+	Scene<3> scene;
+	constexpr int side = 8, layers = 40;
+	constexpr double apart = 1.2, shear = 2;  // [d], [1/s]
+	scene.cell.high = { side * apart, side * apart, 0 };
+	scene.cell.periodic = { true, true, false };
+	scene.law = laws::hertz_restitution(2e4, 0.3, 0.7, 0.4);
+	scene.dt = 2e-4;
+	for (int k = 0; k < side * side * layers; ++k) {
+		Grain<3> one;
+		one.place = { (k % side + 0.5) * apart, (k / side % side + 0.5) * apart, k / (side * side) * apart };
+		one.velocity = { shear * one.place[2], 0, 0 };
+		one.radius = 0.5, one.mass = 1;
+		scene.grains.push_back(one);
+	}
+	Stepper<3> loop(scene);
+	loop.step(2000);
+	EXPECT_GE(loop.selections_done(), 10);
+	EXPECT_LE(4 * loop.searches_done(), loop.selections_done());
+}
+
 TEST(SphereLoop, scenes_that_cannot_be_run_are_refused)
 {
 	const auto refused = [](const char* words, auto change) {
