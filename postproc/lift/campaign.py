@@ -2,7 +2,7 @@
 
 from ..campaign.planned import PlannedFigure, Report
 from . import plots
-from .claims import depth_claims, diameter_claims, speed_claims, stress_claims
+from .claims import box_claims, depth_claims, diameter_claims, speed_claims, stress_claims
 
 TITLE = "Lift: drag and lift on a cylinder in a bed of spheres"
 SWEEPS = {
@@ -11,6 +11,7 @@ SWEEPS = {
     "fields": "a few runs with fields=1",
     "speed": "three speeds",
     "diameter": "several cylinder_diameter, deep",
+    "box": "two sizes of the box at the same depth",
 }
 
 
@@ -60,6 +61,14 @@ FIGURES = (
         "Lift over buoyancy against D/d. Paper: it falls towards 20.",
         diameter_claims,
         plots.against("cylinder_diameter", "$D/d$", "lift_over_buoyancy", "lift over buoyancy"),
+    ),
+    PlannedFigure(
+        "box",
+        "box",
+        "The box: lift against its width",
+        "The same cylinder under the same weight in a wider, broader and deeper box: what the smaller one changes.",
+        box_claims,
+        plots.against("width", "width [$d$]", "lift_over_buoyancy", "lift over buoyancy"),
     ),
 )
 

@@ -143,3 +143,18 @@ def diameter_claims(_campaign, rows):
         return []
     text = f"lift over buoyancy at D = {diameter[0]:g} d less that at {diameter[-1]:g} d"
     return [claim(rows, text, "Fig. 5", "> 0", lift[0] - lift[-1], above(0))]
+
+
+# ---- The box ---------------------------------------------------------------------------------------------------------
+
+
+def box_claims(_campaign, rows):
+    """Drag and lift in the smaller box over those in the larger one."""
+    claims = []
+    for name, words in (("drag_coefficient", "C_d"), ("lift_over_buoyancy", "lift")):
+        width, value = curve(rows, "width", name)
+        if len(width) < 2:
+            return []
+        text = f"{words} in a box {width[0]:g} d wide over that in one of {width[-1]:g} d"
+        claims.append(claim(rows, text, "our own check", "1", value[0] / value[-1], Agrees(1, 0.1, 0.2)))
+    return claims
