@@ -11,7 +11,7 @@ SWEEPS = {
     "fields": "a few runs with fields=1",
     "speed": "three speeds",
     "diameter": "several cylinder_diameter, deep",
-    "box": "two sizes of the box at the same depth",
+    "box": "two sizes of the box at the same depth, for one or more lid_density",
 }
 
 
@@ -68,7 +68,7 @@ FIGURES = (
         "The box: lift against its width",
         "The same cylinder under the same weight in a wider, broader and deeper box: what the smaller one changes.",
         box_claims,
-        plots.against("width", "width [$d$]", "lift_over_buoyancy", "lift over buoyancy"),
+        plots.against("width", "width [$d$]", "lift_over_buoyancy", "lift over buoyancy", by="lid_density"),
     ),
 )
 

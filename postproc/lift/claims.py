@@ -149,12 +149,13 @@ def diameter_claims(_campaign, rows):
 
 
 def box_claims(_campaign, rows):
-    """Drag and lift in the smaller box over those in the larger one."""
+    """Drag and lift in the smaller box over those in the larger one, for each lid."""
     claims = []
-    for name, words in (("drag_coefficient", "C_d"), ("lift_over_buoyancy", "lift")):
-        width, value = curve(rows, "width", name)
-        if len(width) < 2:
-            return []
-        text = f"{words} in a box {width[0]:g} d wide over that in one of {width[-1]:g} d"
-        claims.append(claim(rows, text, "our own check", "1", value[0] / value[-1], Agrees(1, 0.1, 0.2)))
+    for lid, group in rows.groupby("lid_density"):
+        for name, words in (("drag_coefficient", "C_d"), ("lift_over_buoyancy", "lift")):
+            width, value = curve(group, "width", name)
+            if len(width) < 2:
+                continue
+            text = f"lid {lid:g} ρ_g: {words} in a box {width[0]:g} d wide over that in one of {width[-1]:g} d"
+            claims.append(claim(group, text, "our own check", "1", value[0] / value[-1], Agrees(1, 0.1, 0.2)))
     return claims

@@ -65,13 +65,16 @@ def around_body(campaign, rows, claims):
     return figure
 
 
-def against(key, label, name, symbol):
-    """Return the function that draws a quantity against a key."""
+def against(key, label, name, symbol, by=None):
+    """Return the function that draws a quantity against a key, a line for each value of the key `by`."""
 
     def draw(_campaign, rows, claims):
         figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.4)
-        draw_points(axes, *curve(rows, key, name), marker="o")
+        for k, (value, group) in enumerate(rows.groupby(by) if by else [("", rows)]):
+            draw_points(axes, *curve(group, key, name), **look(k, f"{by} = {value:g}" if by else None))
         axes.set(xlabel=label, ylabel=symbol, ylim=(0, None))
+        if by:
+            axes.legend(fontsize=6)
         return figure
 
     return draw
