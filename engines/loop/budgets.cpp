@@ -37,10 +37,19 @@ double Budgets<D>::body_speed(std::size_t b) const
 	return length(body.velocity - drift_of(state.n_blocks() + b)) + length(body.spin) * state.reach[b];
 }
 
+/// Somewhat longer than the pace, but so short that what drifts fastest gains a diameter on what drifts slowest: the cells in which
+/// displacements are compared must hold all that may meet until then.
 template <int D>
-double Budgets<D>::horizon() const
+void Budgets<D>::choose_horizon()
 {
-	return D == 3 ? std::ceil(horizon_in_paces * state.pace) * state.scene.dt : HUGE_VAL;
+	if (D == 2) return;
+	Vec<D> slowest = Vec<D>::all(HUGE_VAL), fastest = Vec<D>::all(-HUGE_VAL);
+	for (std::size_t p = 0; p < speed.size(); ++p)
+		for (int k = 0; k < D; ++k)
+			slowest[k] = std::min(slowest[k], drift_of(p)[k]), fastest[k] = std::max(fastest[k], drift_of(p)[k]);
+	const double dt = state.scene.dt, gain = speed.empty() ? 0 : length(fastest - slowest) * dt;
+	const double steps = std::min(horizon_in_paces * state.pace, std::max(state.typical_diameter / gain, fewest_steps));
+	state.horizon = std::ceil(steps) * dt;
 }
 
 template <int D>
@@ -54,7 +63,7 @@ template <int D>
 double Budgets<D>::way_to_come(std::size_t p) const
 {
 	if (D == 2) return state.allowed[p];
-	return state.allowed[p] + length(drift_of(p)) * horizon();
+	return state.allowed[p] + length(drift_of(p)) * state.horizon;
 }
 
 template <int D>
@@ -150,7 +159,7 @@ double Budgets<3>::approach_before_selection() const
 {
 	for (const double way : displaced)
 		if (!std::isfinite(way)) return HUGE_VAL;  // someone has moved grains by hand
-	return RelativeMotionGrid(state, horizon()).largest_approach();
+	return RelativeMotionGrid(state, state.horizon).largest_approach();
 }
 
 template <int D>
@@ -171,7 +180,7 @@ template <int D>
 void Budgets<D>::spend(double drift)
 {
 	// A step that ends at the horizon may still be made with the selected pairs.
-	if (D == 3) state.selection_due |= (state.steps + 1 - state.selected_at) * state.scene.dt >= horizon();
+	if (D == 3) state.selection_due |= (state.steps + 1 - state.selected_at) * state.scene.dt >= state.horizon;
 	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
 		if (state.body_fixed[b]) continue;
 		double& way = state.travelled[state.n_blocks() + b];

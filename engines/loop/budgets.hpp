@@ -26,7 +26,7 @@ public:
 	void find_neighbours(const Neighbours& pairs);
 	void allow_travel();
 	/// For how long a selection may last, in space [s]; without end in the plane.
-	double horizon() const;
+	void choose_horizon();
 	void choose_pace(const PairCounts& counts, std::size_t candidates);
 	/// A bound on how much nearer two grains can have come to each other since the last search when the next selection is made [m].
 	double approach_before_selection() const;

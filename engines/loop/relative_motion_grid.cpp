@@ -12,9 +12,14 @@ constexpr double cells_per_grain = 2;  // at most; wider cells where a box is mo
 
 }  // namespace
 
-void RelativeMotionGrid::Motion::include(const Motion& other)
+void RelativeMotionGrid::Range::include(const Range& other)
 {
 	for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], other.low[k]), high[k] = std::max(high[k], other.high[k]);
+}
+
+void RelativeMotionGrid::Motion::include(const Motion& other)
+{
+	now.include(other.now), then.include(other.then);
 	allowed = std::max(allowed, other.allowed);
 }
 
@@ -65,8 +70,8 @@ void RelativeMotionGrid::enter(std::uint32_t row)
 	Motion motion;
 	motion.allowed = state.allowed[party];
 	for (int k = 0; k < 3; ++k) {
-		const double now = grain.x[k] - state.searched_at[3 * row + k], then = now + state.drifts[party][k] * horizon;
-		motion.low[k] = std::min(now, then), motion.high[k] = std::max(now, then);
+		motion.now.low[k] = motion.now.high[k] = grain.x[k] - state.searched_at[3 * row + k];
+		motion.then.low[k] = motion.then.high[k] = motion.now.low[k] + state.drifts[party][k] * horizon;
 	}
 	const double beyond = std::max(0.0, grain.radius - state.largest_free_radius);
 	int first[3], last[3];
@@ -102,8 +107,9 @@ double RelativeMotionGrid::largest_approach() const
 {
 	double largest = 0;
 	for (const Motion& motion : motions) {
-		if (!(motion.low[0] <= motion.high[0])) continue;  // nobody is here
-		largest = std::max(largest, length(motion.high - motion.low) + 2 * motion.allowed);
+		if (!(motion.now.low[0] <= motion.now.high[0])) continue;  // nobody is here
+		for (const Range& range : { motion.now, motion.then })
+			largest = std::max(largest, length(range.high - range.low) + 2 * motion.allowed);
 	}
 	return largest;
 }

@@ -15,10 +15,15 @@ public:
 	double largest_approach() const;
 
 private:
-	/// What grains of a cell have in common.
+	/// Displacements since the search.
+	struct Range {
+		Vec<3> low = Vec<3>::all(HUGE_VAL), high = Vec<3>::all(-HUGE_VAL);  // [m]
+		void include(const Range& other);
+	};
+	/// What grains of a cell have in common. Drifts are steady, so what two have gone differently is largest now or at the horizon.
 	struct Motion {
-		Vec<3> low = Vec<3>::all(HUGE_VAL), high = Vec<3>::all(-HUGE_VAL);  // of displacements since the search [m]
-		double allowed = 0;                                                 // largest budget [m]
+		Range now, then;
+		double allowed = 0;  // largest budget [m]
 		void include(const Motion& other);
 	};
 	const State<3>& state;

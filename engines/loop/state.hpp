@@ -72,6 +72,7 @@ struct State {
 	std::vector<double> travelled, allowed;  ///< bound on the way since the last selection, its limit [m]
 	std::vector<Vec<D>> drifts;              ///< velocity against which these are meant [m/s], in space
 	long selected_at = 0;                    ///< step of the last selection
+	double horizon = 0;                      ///< how long that may last at most [s], in space
 	double pace = 40;                        ///< steps between selections that budgets are made for
 	bool selection_due = true;
 
@@ -125,7 +126,7 @@ void visit_state(Visitor&& visit, AState& s)
 	visit(s.rows), visit(s.inverse_masses), visit(s.index_of), visit(s.members), visit(s.body_fixed);
 	s.pairs.visit(visit);
 	visit(s.searched_at), visit(s.skin);
-	visit(s.travelled), visit(s.allowed), visit(s.drifts), visit(s.selected_at), visit(s.pace), visit(s.selection_due);
+	visit(s.travelled), visit(s.allowed), visit(s.drifts), visit(s.selected_at), visit(s.horizon), visit(s.pace), visit(s.selection_due);
 	visit(s.touches), visit(s.pushes), visit(s.guards);
 }
 

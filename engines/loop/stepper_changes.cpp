@@ -102,6 +102,9 @@ void Stepper<D>::set_time_step(double dt)
 	check_surfaces(changed);
 	state.scene.dt = dt;
 	use_whole_steps();
+	if (D == 2) return;
+	state.selection_due = true;  // how far drifts carry until the next one is counted in steps of one length
+	surfaces.forget_list();
 }
 
 template <int D>

@@ -8,7 +8,10 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double steps_between_searches = 300;  // aimed at, where grains are fast
+/// Aimed at, where grains are fast: in space displacements are compared over some diameters, in which a shear grows to three times as much
+/// as between two neighbours.
+template <int D>
+constexpr double steps_between_searches = D == 2 ? 300 : 900;
 constexpr double smallest_skin = 0.1;           // [d]
 template <int D>
 constexpr double largest_skin = D == 2 ? 0.35 : 0.6;  // [d], measured: where grains flow, searches are rarer
@@ -44,7 +47,7 @@ bool Stepper<D>::update_lists(int rank)
 		if (rank == 0) budgets.find_neighbours(pairs), budgets.allow_travel();
 		team->barrier();
 	}
-	pairs.select(rank, budgets.smallest(), budgets.horizon());
+	pairs.select(rank, budgets.smallest(), state.horizon);
 	team->barrier();
 	if (rank == 0) finish_lists();
 	team->barrier();
@@ -56,6 +59,7 @@ template <int D>
 void Stepper<D>::plan_lists()
 {
 	try {
+		budgets.choose_horizon();
 		if (state.searches > 0) budgets.allow_travel();
 		searching = state.searches == 0 || !(budgets.approach_before_selection() <= state.skin);
 		if (searching) begin_search();
@@ -67,7 +71,7 @@ void Stepper<D>::plan_lists()
 template <int D>
 void Stepper<D>::begin_search()
 {
-	const double d = state.typical_diameter, wanted = budgets.fastest_approach() * state.scene.dt * steps_between_searches;
+	const double d = state.typical_diameter, wanted = budgets.fastest_approach() * state.scene.dt * steps_between_searches<D>;
 	state.skin = state.scene.skin > 0 ? state.scene.skin : std::clamp(wanted, smallest_skin * d, largest_skin<D> * d);
 	wrap_into_cell();
 	pairs.begin_search(given_springs);
