@@ -155,6 +155,7 @@ TEST(SphereLoop, a_prescribed_sphere_moves_as_it_is_told_and_drives_the_others)
 TEST(SphereLoop, a_checkpoint_goes_on_to_the_same_bits_on_other_threads)
 {
 	Scene<3> scene = ball_crowd(6, 6, 5, 1);
+	scene.skin = 0.1;  // so that many searches are made
 	Stepper<3> one(scene);
 	one.step(300);
 	const graindrive::test::TemporaryFile file;
