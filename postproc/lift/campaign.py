@@ -1,7 +1,7 @@
-"""Report of a lift campaign: Figs. 5, 8, 9, 11, 12 and 13 of Guillard, Forterre, Pouliquen, Phys. Fluids 26, 043301 (2014)."""
+"""Report of a lift campaign: figures of Guillard, Forterre, Pouliquen, Phys. Fluids 26, 043301 (2014), and RFT on trial."""
 
 from ..campaign.planned import PlannedFigure, Report
-from . import plots
+from . import plots, rft_report
 from .claims import depth_claims, diameter_claims, speed_claims, stress_claims
 
 TITLE = "Lift: drag and lift on a cylinder in a bed of spheres"
@@ -11,6 +11,10 @@ SWEEPS = {
     "fields": "a few runs with fields=1",
     "speed": "three speeds",
     "diameter": "several cylinder_diameter, deep",
+    "plates": "shape= plates of tilts all around, at one depth, lid_density=0",
+    "shallow": "some of the plates at a smaller depth",
+    "halves": "shape= bodies that are convex, as plates",
+    "cylinder": "the cylinder at several depths, with bulk_gravity=1",
 }
 
 
@@ -60,6 +64,16 @@ FIGURES = (
         "Lift over buoyancy against D/d. Paper: it falls towards 20.",
         diameter_claims,
         plots.against("cylinder_diameter", "$D/d$", "lift_over_buoyancy", "lift over buoyancy"),
+    ),
+    PlannedFigure(
+        "rft",
+        "plates",
+        "Resistive-force theory on trial",
+        "Stress on plates by tilt; drag and lift on half-cylinders; drag and lift on the cylinder against depth. Lines are sums"
+        " over the leading surface, with bands of one standard error from the plates'. Published form: all stress is"
+        " proportional to depth. Split form: only what is odd (lift) or even (drag) in the tilt grows with depth.",
+        rft_report.rft_claims,
+        rft_report.draw,
     ),
 )
 
