@@ -66,8 +66,8 @@ def leading_elements(outline):
 
 
 def circle(diameter, parts=360):
-    """Return corners (parts, 2) of a polygon with the circumference of a circle."""
-    angle = (np.arange(parts) + 0.5) * 2 * np.pi / parts
+    """Return corners (parts, 2) of a polygon with the circumference of a circle; with `parts` even, half of its sides lead."""
+    angle = np.pi / 2 + np.arange(parts) * 2 * np.pi / parts
     radius = diameter / 2 * (np.pi / parts) / np.sin(np.pi / parts)
     return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 

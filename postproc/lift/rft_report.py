@@ -149,7 +149,9 @@ def cylinder_claims(campaign, rows, plates):
         return []
     rows = rows.iloc[np.argsort(rows["effective_depth"].to_numpy())]
     nearest = np.argmin(np.abs([depth_of(row) - plates.depth for _, row in rows.iterrows()]))
-    claims = ratio_claims(campaign, rows.iloc[[nearest]], plates, "cylinder, at the plates' depth", rft.as_published, "")
+    claims = ratio_claims(
+        campaign, rows.iloc[[nearest]], plates, "cylinder, at the plates' depth", rft.as_published, ""
+    )
     for name, form in FORMS:
         deepest = rows.iloc[[-1]]
         lift = quantity(deepest, "lift_over_buoyancy")
@@ -224,7 +226,9 @@ def draw_plates(axes, plates, rho_g):
     axes.axhline(0, color=BLACK, linewidth=0.4)
     misfit = rft.misfit(plates)
     axes.set_title(rf"dotted: Fourier, $\chi^2/\nu$ = {misfit[0]:.2g}, {misfit[1]:.2g}", fontsize=7)
-    axes.set(xlabel=r"tilt $\beta$ [°], > 0: leading face looks down", ylabel=r"$\alpha/\rho g$", xticks=range(-90, 91, 45))
+    axes.set(
+        xlabel=r"tilt $\beta$ [°], > 0: leading face looks down", ylabel=r"$\alpha/\rho g$", xticks=range(-90, 91, 45)
+    )
     axes.legend()
 
 
@@ -264,7 +268,9 @@ def draw_depths(drag, lift, rows, plates, rho_g):
         for axes, found in zip((drag, lift), curves):
             colour = look(k, "")["color"]
             axes.plot(depths, found[:, 0], color=colour, label=f"RFT, {name} form", linestyle=("-", "--")[k - 1])
-            axes.fill_between(depths, found[:, 0] - found[:, 1], found[:, 0] + found[:, 1], color=colour, alpha=0.2, lw=0)
+            axes.fill_between(
+                depths, found[:, 0] - found[:, 1], found[:, 0] + found[:, 1], color=colour, alpha=0.2, lw=0
+            )
     for axes, name in ((drag, "drag_coefficient"), (lift, "lift_over_buoyancy")):
         points = [quantity(rows.iloc[[n]], name) for n in range(len(rows))]
         draw_points(axes, rows["depth_over_d"], points, linestyle="", **look(0, "measured"))

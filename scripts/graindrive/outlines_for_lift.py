@@ -1,4 +1,4 @@
-"""Outlines of the bodies that put resistive-force theory to the test: tilted plates and half-cylinders, written to studies/shapes/.
+"""Outlines of the bodies that put resistive-force theory to the test: tilted plates and half-cylinders, in studies/shapes/.
 
     PYTHONPATH=build/python /usr/bin/python3 -m graindrive.outlines_for_lift
 
@@ -14,7 +14,7 @@ import numpy as np
 from .whole_files import write_text
 
 LENGTH = 3.0  # d, of the plates
-THICKNESS = 0.3  # d: two grains on either side of a plate are further apart than they reach
+THICKNESS = 0.3  # d: thin, and yet twice as thick as the deepest overlap of a grain at the default of largest_overlap
 DIAMETER = 3.3  # d, of the half-cylinders, as of the cylinder of the study
 CHORDS = 24  # of a half circle; the area is 0.3 % less than the circle's
 TILTS = (-67.5, -45.0, -22.5, 0.0, 22.5, 45.0, 67.5, 90.0)  # degrees; -90 is 90

@@ -31,7 +31,9 @@ def test_a_constant_stress_on_a_circle_acts_on_half_its_circumference(weights):
     found, error = rft.force(rows, made)
     assert np.allclose(found, np.pi * RADIUS * DEPTH * np.array([3e5, -2e5]), rtol=1e-12)
     # 1e4 pi R h if all plates erred alike; eight that err on their own give less, but no less than over sqrt(8).
-    assert np.all(error < 1e4 * np.pi * RADIUS * DEPTH) and np.all(error > 1e4 * np.pi * RADIUS * DEPTH / np.sqrt(8.001))
+    assert np.all(error < 1e4 * np.pi * RADIUS * DEPTH) and np.all(
+        error > 1e4 * np.pi * RADIUS * DEPTH / np.sqrt(8.001)
+    )
 
 
 def test_a_stress_along_the_normal_lifts_by_buoyancy():
@@ -99,7 +101,9 @@ def test_plates_without_a_mirror_image_are_refused_by_name():
 
 def test_the_stored_outlines_are_those_that_the_module_makes():
     stored = {path.name: path.read_text() for path in outlines_for_lift.FOLDER.glob("*.csv")}
-    assert stored == {name: outlines_for_lift.text_of(corners) for name, corners in outlines_for_lift.outlines().items()}
+    assert stored == {
+        name: outlines_for_lift.text_of(corners) for name, corners in outlines_for_lift.outlines().items()
+    }
 
 
 @pytest.mark.parametrize("tilt", outlines_for_lift.TILTS)
