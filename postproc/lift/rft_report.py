@@ -276,7 +276,7 @@ def draw_depths(drag, lift, rows, plates, rho_g):
         draw_points(axes, rows["depth_over_d"], points, linestyle="", **look(0, "measured"))
         axes.axvline(plates.depth / diameter, color=BLACK, linewidth=0.4, linestyle=":")
         axes.set(xlabel=r"$\tilde h/D$; dotted: depth of the plates")
-    drag.set(ylabel=r"$C_d$", ylim=(0, None))
+    drag.set(ylabel=r"$C_d$", ylim=(0, 1.2 * drag.get_ylim()[1]))
     lift.set(ylabel="lift over buoyancy")
     lift.axhline(0, color=BLACK, linewidth=0.4)
     lift.legend(fontsize=6)

@@ -1,17 +1,21 @@
 """RFT on trial: verdicts on made-up campaigns in which bodies obey one of its two forms."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
 
 from graindrive import outlines_for_lift
+from graindrive.campaign.plan import read_plan
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.lift import rft, rft_report
 
 D, RHO_G, BREADTH = 1.5e-3, 15e3, 5.0
 DEEP, SHALLOW = 30.0, 10.0  # d
 FORMS = dict(rft_report.FORMS)
+CAMPAIGNS = Path(__file__).resolve().parents[2] / "studies" / "campaigns"
 
 
 def alpha(beta, depth, form):
@@ -117,3 +121,12 @@ def test_the_figure_shows_the_lift_by_rft_at_the_depth_of_a_run():
     plt.close(figure)
     # The run's force is the sum over a polygon of the same sides; the line is straight.
     assert at == pytest.approx(deepest["lift_over_buoyancy"], rel=1e-3)
+
+
+def test_the_campaign_drags_all_outlines_and_the_cylinder_as_lift_small_does():
+    """Its runs of the cylinder bear the names of those of lift_small.yaml, so that finished ones can serve both."""
+    plan, other = (read_plan(CAMPAIGNS / f"{name}.yaml") for name in ("lift_rft", "lift_small"))
+    dragged = {Path(run.parameters.shape).name for run in plan.runs if "cylinder" not in run.sweeps}
+    assert dragged == set(outlines_for_lift.outlines())
+    cylinders = {run.name for run in plan.runs if "cylinder" in run.sweeps}
+    assert len(cylinders) == 6 and cylinders <= {run.name for run in other.runs}
