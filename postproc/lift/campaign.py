@@ -11,9 +11,9 @@ SWEEPS = {
     "fields": "a few runs with fields=1",
     "speed": "three speeds",
     "diameter": "several cylinder_diameter, deep",
-    "plates": "shape= plates of tilts all around, at one depth, lid_density=0",
-    "shallow": "some of the plates at a smaller depth",
-    "halves": "shape= bodies that are convex, as plates",
+    "plates": "shape= plates of tilts all around, at one depth",
+    "growth": "two of the plates, of opposite tilts, at another depth",
+    "halves": "shape= half-cylinders, at the depth of the plates",
     "cylinder": "the cylinder at several depths, with bulk_gravity=1",
 }
 

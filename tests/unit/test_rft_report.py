@@ -28,7 +28,7 @@ def scene():
     """All bodies of the campaign: (sweep, shape, depth [d], outline [m])."""
     outlines = {name: corners * D for name, corners in outlines_for_lift.outlines().items()}
     made = [("plates" if "plate" in name else "halves", name, DEEP, corners) for name, corners in outlines.items()]
-    made += [("shallow", name, SHALLOW, outlines[name]) for name in ("plate_45.csv", "plate_-45.csv")]
+    made += [("growth", name, SHALLOW, outlines[name]) for name in ("plate_45.csv", "plate_-45.csv")]
     return made + [("cylinder", "cylinder", depth, rft.circle(3.3 * D)) for depth in (SHALLOW, DEEP, 90.0)]
 
 
