@@ -1,7 +1,7 @@
-"""Report of a lift campaign: Figs. 5, 8, 9, 11, 12 and 13 of Guillard, Forterre, Pouliquen, Phys. Fluids 26, 043301 (2014)."""
+"""Report of a lift campaign: figures of Guillard, Forterre, Pouliquen, Phys. Fluids 26, 043301 (2014), and RFT on trial."""
 
 from ..campaign.planned import PlannedFigure, Report
-from . import plots
+from . import plots, rft_report
 from .claims import box_claims, depth_claims, diameter_claims, speed_claims, stress_claims
 
 TITLE = "Lift: drag and lift on a cylinder in a bed of spheres"
@@ -12,6 +12,10 @@ SWEEPS = {
     "speed": "three speeds",
     "diameter": "several cylinder_diameter, deep",
     "box": "two sizes of the box at the same depth, for one or more lid_density",
+    "plates": "shape= plates of tilts all around, at one depth",
+    "growth": "two of the plates, of opposite tilts, at another depth",
+    "halves": "shape= half-cylinders, at the depth of the plates",
+    "cylinder": "the cylinder at several depths, with bulk_gravity=1",
 }
 
 
@@ -69,6 +73,16 @@ FIGURES = (
         "The same cylinder under the same weight in a wider, broader and deeper box: what the smaller one changes.",
         box_claims,
         plots.against("width", "width [$d$]", "lift_over_buoyancy", "lift over buoyancy", by="lid_density"),
+    ),
+    PlannedFigure(
+        "rft",
+        "plates",
+        "Resistive-force theory on trial",
+        "Stress on plates by tilt; drag and lift on half-cylinders; drag and lift on the cylinder against depth. Lines are sums"
+        " over the leading surface, with bands of one standard error from the plates'. Published form: all stress is"
+        " proportional to depth. Split form: only what is odd (lift) or even (drag) in the tilt grows with depth.",
+        rft_report.rft_claims,
+        rft_report.draw,
     ),
 )
 
