@@ -222,9 +222,15 @@ QUANTITIES = {
         **of(
             "length",
             beads="(x, y) of the beads about the centroid at the start",
-            outline="(x, y) of the outline's corners about the centroid at the start; a disk has none",
+            outline="(x, y) of the outline's corners about the centroid at the start, of a solid (x, z); a disk has none",
             bead_radius="radius of the beads, or of the disk",
-        )
+            low="a solid among spheres: least (x, y, z) of the box around it; along an axis without end, of the run's box",
+            high="a solid among spheres: greatest (x, y, z)",
+            points="(x, y, z) of the corners of a mesh of a solid without an outline",
+        ),
+        **of(
+            "-", quads="rows of points, the four corners of each face of that mesh, counter-clockwise seen from outside"
+        ),
     },
     "fields/NAME": {
         **of(

@@ -104,6 +104,12 @@ class Frame:
         cos, sin = np.cos(angle), np.sin(angle)
         return (np.asarray(points) - beads.mean(axis=0)) @ np.array([[cos, sin], [-sin, cos]]) + middle
 
+    def place_solid(self, points):
+        """Return points (n, 3) about the origin of a driven solid among spheres where they are now."""
+        w, *axis = self.intruder["turn"]
+        once = np.cross(axis, points)
+        return points + 2 * (w * once + np.cross(axis, once)) + self.intruder["centre"]
+
 
 class Run:
     """A run folder, complete, interrupted or still growing; raises RunError if `path` is none of these.

@@ -45,7 +45,7 @@ from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.lift import figure, forces  # noqa: E402
+from graindrive.postproc.lift import animation, figure, forces  # noqa: E402
 from graindrive.postproc.lift.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.yade_march import YadeMarch  # noqa: E402
@@ -368,7 +368,7 @@ def run(p, folder):
         load_error=stage["load_error"],
         inertial_number=seen.inertial_number,
     )
-    folder.write("intruder", dict(outline=body.outline))
+    folder.write("intruder", body.described())
     record(p, folder, march, stage, seen)
 
 
@@ -468,6 +468,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=figure.draw,
+    film=animation.film,
     report=REPORT,
     constants={
         "d": Constant(D, "m", "diameter of the grains"),

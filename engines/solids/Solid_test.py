@@ -1,6 +1,8 @@
 """Solids on YADE's own loop: Hertz's overlaps, impacts against the integrated equation, levers, friction, archives, refusals."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -443,6 +445,56 @@ def test_endless_solids_fit_a_periodic_cell_and_short_ones_have_images():
         np.testing.assert_allclose(depths, 0.1 * R, rtol=1e-5)  # they move by 1e-7 of it
 
 
+SORTED_AGAIN = """
+import sys
+import numpy as np
+from graindrive import engines, surfaces
+from yade import O, utils
+from yade.wrapper import Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom
+from yade.wrapper import InsertionSortCollider, InteractionLoop, NewtonIntegrator
+
+O.periodic, O.dt = True, 1e-3
+O.cell.setBox(1, 1, 1)
+O.materials.append(FrictMat(young=1e3, density=1))
+cylinder, plane = surfaces.cylinder((0, 0, 0), (0, 1, 0), 0.1), surfaces.half_space((0, 0, 0), (0, 0, 1))
+surface = dict(cylinder=cylinder, plane=plane)[sys.argv[1]]
+O.bodies.append(surfaces.body(surface, position=(0.5, 0.5, 0.3)))
+for place in np.random.default_rng(1).uniform(0, 1, (200, 3)):
+    sphere = O.bodies[O.bodies.append(utils.sphere(place, 0.02))]
+    sphere.groupMask, sphere.state.vel, sphere.state.blockedDOFs = 3, np.array((0.5, 0.5, 0.5)) - place, "xyzXYZ"
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider(
+        [Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()], allowBiggerThanPeriod=True, avoidSelfInteractionMask=2, verletDist=0.002
+    ),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom(), engines.Ig2_Solid_Sphere_ScGeom()],
+        [engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=0.5)],
+        [engines.Law2_ScGeom_ContactPhys_HertzRestitution(young=1e3, poisson=0.3, restitution=0.5)],
+    ),
+    NewtonIntegrator(damping=0),
+]
+for _ in range(3):
+    O.run(100, True)
+    O.engines[1]()
+O.dt = 0
+O.run(1, True)
+places = np.array([b.state.pos for b in O.bodies])[1:] - (0.5, 0.5, 0.3)
+near = 1 + np.flatnonzero(surface.distance(places) < 0.02)
+found = sorted(max(i.id1, i.id2) for i in O.interactions if i.isReal)
+print(O.engines[1].numAction, "sorts", found == sorted(near), len(near))
+"""
+
+
+@pytest.mark.parametrize("kind, least", [("cylinder", 5), ("plane", 20)])
+def test_an_endless_solid_in_a_periodic_cell_meets_what_comes_near_later(kind, least):
+    """In a process of its own: a collider that does not end cannot be stopped in this one; it takes a few seconds."""
+    code = [sys.executable, "-c", SORTED_AGAIN, kind]
+    said = subprocess.run(code, capture_output=True, text=True, timeout=120, check=True).stdout.split("\n")[-2]
+    sorts, _, right, number = said.split()
+    assert int(sorts) > 10 and right == "True" and int(number) > least
+
+
 def refused(error, *words):
     with pytest.raises(error) as refusal:
         O.run(2, True)
@@ -464,6 +516,10 @@ def test_scenes_that_the_collider_cannot_handle_are_refused_before_the_run():
     O.run(2, True)
     O.bodies[0].shape = engines.Solid(surfaces.ball((0, 0, 0), 0.3))
     refused(ValueError, "no longer than half of the periodic cell along x, 0.5, got 0.6")
+    O.bodies[0].shape = engines.Solid(FLOOR)
+    O.engines[1].verletDist = -1
+    refused(ValueError, "verletDist must be at most 0.9 smallest radii, 0.009, or -0.9, got -1; lower it")
+    O.engines[1].verletDist = -0.5
     O.bodies[0].shape = engines.Solid(surfaces.ball((0, 0, 0), 0.1))
     O.cell.hSize = ((1, 0.1, 0), (0, 1, 0), (0, 0, 1))
     refused(ValueError, "must have perpendicular edges, got a sheared one")

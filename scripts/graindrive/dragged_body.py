@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import intruder, surfaces
+from . import intruder, surface_nets, surfaces
 from .errors import UsageError, one_line
 
 SAMPLED = ".py"  # the ending of a file that defines distance(points)
@@ -37,6 +37,13 @@ class DraggedBody:
     def breadth(self):
         """Extent along y [m], the L of the drag coefficient."""
         return float(self.high[1] - self.low[1])
+
+    def described(self):
+        """Return what a run folder stores of the body, arrays by name [m]: outline, low, high; without an outline a mesh."""
+        told = dict(outline=self.outline, low=self.low, high=self.high)
+        if not len(self.outline):
+            told["points"], told["quads"] = surface_nets.mesh(self.surface, self.low, self.high)
+        return told
 
 
 def of_shape(shape, diameter, breadth, d):

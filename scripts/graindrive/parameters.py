@@ -7,7 +7,13 @@ from typing import ClassVar, Literal
 
 from pydantic import BaseModel, Field, validator
 
-EXPORTS = ("vtk", "xyz", "lammps")  # for ParaView; for OVITO and ASE; for LAMMPS and OVITO
+EXPORTS = (
+    "vtk",
+    "xyz",
+    "lammps",
+    "xyz.gz",
+    "lammps.gz",
+)  # for ParaView; for OVITO and ASE; for LAMMPS and OVITO; compressed
 LIMITS = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from what double precision can hold
 

@@ -2,8 +2,8 @@
 
 Contacts are those at the present positions, with the forces that the next step will find, under either loop; looking changes
 nothing. All places lie in one periodic image, along x for disks and along each periodic axis for spheres: grains in
-[0, period), the body whole with its centre there, a contact point next to its first side. Figures draw disks alone; ParaView
-and OVITO show spheres (`exports`).
+[0, period), the body whole with its centre there, a contact point next to its first side, of a solid next to the grain. A driven
+body that is a solid (`surfaces`) has no disks: only its place is told. On YADE's loop contacts with solids are left out.
 """
 
 from typing import NamedTuple
@@ -35,7 +35,7 @@ def taken(grains, base, intruder):
     from yade import O
 
     shown = np.concatenate([np.asarray(grains, int), np.asarray(base, int)])
-    beads = np.array(scene.members(intruder) if O.bodies[intruder].isClump else [intruder])
+    beads, solid = beads_of(intruder), is_solid(intruder)
     ids, n = np.concatenate([shown, beads]), len(shown)
     rows, period = scene.rows_of(ids), period_of_box()
     centre = np.array(O.bodies[intruder].state.pos)[: 3 if "z" in rows else 2]
@@ -46,7 +46,24 @@ def taken(grains, base, intruder):
         for part in (slice(n), slice(n, None))
     ]
     disks[0]["role"] = np.r_[np.zeros(len(grains), int), np.ones(len(base), int)]
-    return Picture(disks[0], contacts(ids, rows, n), {**disks[1], **pose(intruder, centre)}, period)
+    found = contacts(ids, rows, n, solid=intruder if solid else None)
+    return Picture(disks[0], found, {**disks[1], **pose(intruder, centre)}, period)
+
+
+def is_solid(intruder):
+    """True for a body whose shape is a `surfaces` solid: it has no beads."""
+    from yade import O
+
+    return type(O.bodies[intruder].shape).__name__ == "Solid"
+
+
+def beads_of(intruder):
+    """Return the ids of a body's disks or spheres, (m,); none for a solid."""
+    from yade import O
+
+    if is_solid(intruder):
+        return np.zeros(0, int)
+    return np.array(scene.members(intruder) if O.bodies[intruder].isClump else [intruder])
 
 
 def period_of_box():
@@ -92,20 +109,27 @@ def pose(intruder, centre):
     return {"centre": centre, "angle": np.arctan2(*(f(angle * axis[2]) for f in (np.sin, np.cos)))}
 
 
-def contacts(ids, rows, n):
+def contacts(ids, rows, n, solid=None):
     """Return the contacts between disks `ids`, of which the first `n` are shown as grains and base, and with flat walls.
 
-    `rows` are the disks' columns. Each contact stands once, from its smaller id; they come by rising ids.
+    `rows` are the disks' columns, `solid` is the id of a driven body without disks. Each contact stands once, from its
+    smaller id; they come by rising ids.
     """
     from yade import O
 
     row_of_id = np.full(len(O.bodies) + 1, NOT_SHOWN)
     row_of_id[ids] = np.arange(len(ids))
+    if solid is not None:
+        row_of_id[solid] = len(ids)  # behind all disks
     table = ordered(present_contacts())
     i, j = row_of_id[table["i"]], np.where(table["j"] >= 0, row_of_id[table["j"]], table["j"])
     kept = (i != NOT_SHOWN) & (j != NOT_SHOWN)
     i, j, table = i[kept], j[kept], {name: column[kept] for name, column in table.items()}
-    normal, reach = table["normal"], rows["r"][i] - table["overlap"] / 2
+    of_solid = i == len(ids)
+    begin, side = np.where(of_solid, j, i), np.where(
+        of_solid, -1, 1
+    )  # the point is seen from a disk: a solid has no radius
+    normal, reach = table["normal"], side * (rows["r"][begin] - table["overlap"] / 2)
     axes = "xyz" if "z" in rows else "xy"
     return dict(
         i=named(i, n),
@@ -114,7 +138,7 @@ def contacts(ids, rows, n):
         id_j=table["j"],
         fn=np.sum((table["normal_force"] * normal)[:, : len(axes)], axis=1),
         **(tangential_in_space(table) if len(axes) == 3 else tangential_in_plane(table)),
-        **{f"p{axis}": rows[axis][i] + reach * normal[:, k] for k, axis in enumerate(axes)},
+        **{f"p{axis}": rows[axis][begin] + reach * normal[:, k] for k, axis in enumerate(axes)},
     )
 
 

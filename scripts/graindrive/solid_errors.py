@@ -11,6 +11,9 @@ from yade.wrapper import Omega
 from ._engines import check_solids, solids_outgrow_cell, take_complaint
 
 
+LARGEST_SKIN = 0.9  # smallest radii
+
+
 def raise_complaint():
     """Raise RuntimeError with what a functor complained of, if it did."""
     complaint = take_complaint()
@@ -24,10 +27,25 @@ def check(omega):
     if not solids_outgrow_cell(omega._sceneObj):
         return
     for engine in omega.engines:
-        if type(engine).__name__ == "InsertionSortCollider" and not engine.allowBiggerThanPeriod:
+        if type(engine).__name__ != "InsertionSortCollider":
+            continue
+        if not engine.allowBiggerThanPeriod:
             raise ValueError(
                 "a Solid without end in a periodic cell needs InsertionSortCollider.allowBiggerThanPeriod=True, got False; set it"
             )
+        check_skin(omega, engine.verletDist)
+
+
+def check_skin(omega, skin):
+    """Raise ValueError if the collider widens boxes so far that those of endless solids would close (see Bo1_Solid_Aabb)."""
+    radii = [body.shape.radius for body in omega.bodies if type(body.shape).__name__ == "Sphere"]
+    smallest = min(radii, default=0)
+    most = LARGEST_SKIN * smallest
+    if radii and (skin if skin >= 0 else -skin * smallest) > most:
+        raise ValueError(
+            "with a Solid without end in a periodic cell InsertionSortCollider.verletDist must be at most"
+            f" {LARGEST_SKIN} smallest radii, {most:g}, or -{LARGEST_SKIN}, got {skin:g}; lower it"
+        )
 
 
 def checked(of_yade, starts):

@@ -23,7 +23,8 @@ def export(frames, folder, body=None, units=()):
     with role 2: in ParaView, glyph by sphere, scale by radius, factor 2. Contacts are lines from centre to centre with
     ids i, j, slip, normal force (< 0 pulls) and tangential force (on i along z x n). The intruder is its outline as one
     closed line; a single disk's is a circle with a spoke, which shows its turn. Spheres have spin, slip and tangential force
-    as vectors, and a driven body among them has no outline: it is its beads. Raises UsageError without python3-vtk9.
+    as vectors. A driven body among them is its beads, or, if it is a solid, a surface of polygons; one without ends is
+    closed at the box's sides. Raises UsageError without python3-vtk9.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -32,6 +33,8 @@ def export(frames, folder, body=None, units=()):
         parts = {"grains": grain_points(frame, units), "contacts": contact_lines(frame, units)}
         if body and len(frame.axes) == 2 and len(frame.intruder.get("x", ())):
             parts["intruder"] = outline(frame, body)
+        if body and len(frame.axes) == 3 and "high" in body:
+            parts["intruder"] = solid(frame, body)
         for kind, data in parts.items():
             name = f"{kind}_{number:04d}.vtp"
             write(data, folder / name)
@@ -77,6 +80,29 @@ def outline(frame, body):
     places = frame.place(corners, body["beads"])
     cells = np.append(np.arange(len(places)), 0)[None, :]
     return polydata(in_plane(*places.T), "lines", cells, {}, on_points=False)
+
+
+def solid(frame, body):
+    """Return the vtkPolyData of the surface of a driven solid in a frame."""
+    points, faces = swept(body) if len(body["outline"]) else (body["points"], [body["quads"]])
+    return polydata(frame.place_solid(points), "polys", faces, {}, on_points=False)
+
+
+def swept(body):
+    """Return points (2 m, 3) and faces, arrays of rows, of an outline (m, 2) of x and z that is swept along y with both ends."""
+    outline, m = np.asarray(body["outline"]), len(body["outline"])
+    if area(outline) < 0:
+        outline = outline[::-1]
+    points = [np.insert(outline, 1, body[end][1], axis=1) for end in ("low", "high")]
+    here, there = np.arange(m), np.roll(np.arange(m), -1)
+    sides = np.stack([here, here + m, there + m, there], axis=1)
+    return np.concatenate(points), [sides, here[None, :], (here[::-1] + m)[None, :]]
+
+
+def area(outline):
+    """Return the area within an outline (m, 2), > 0 for corners that go round counter-clockwise."""
+    (x, y), (x_next, y_next) = outline.T, np.roll(outline, -1, axis=0).T
+    return np.sum(x * y_next - x_next * y) / 2
 
 
 def circle_with_spoke(body):

@@ -30,17 +30,20 @@ def in_plane(x, y):
 
 
 def polydata(points, kind, cells, arrays, units=(), *, on_points):
-    """Return a vtkPolyData of `points` (n, 3), `cells` (m, k) of kind "verts" or "lines", and named arrays on either.
+    """Return a vtkPolyData of `points` (n, 3), `cells` of kind "verts", "lines" or "polys", and named arrays on either.
 
+    `cells` is an array (m, k) of rows of points, or a list of such arrays with k of their own.
     `units` maps names to units, which the arrays carry as VTK's key UNITS_LABEL.
     """
     core, model, _, support = modules()
     data, positions, grid = model.vtkPolyData(), core.vtkPoints(), model.vtkCellArray()
     positions.SetData(support.numpy_to_vtk(points, deep=True))
     data.SetPoints(positions)
-    offsets = np.arange(0, cells.size + 1, cells.shape[1], dtype=np.int64)
-    grid.SetData(*(support.numpy_to_vtkIdTypeArray(a.astype(np.int64), deep=True) for a in (offsets, cells.ravel())))
-    data.SetVerts(grid) if kind == "verts" else data.SetLines(grid)
+    groups = cells if isinstance(cells, list) else [cells]
+    offsets = np.cumsum(np.concatenate([[0], *(np.full(len(group), group.shape[1]) for group in groups)]))
+    corners = np.concatenate([group.ravel() for group in groups])
+    grid.SetData(*(support.numpy_to_vtkIdTypeArray(a.astype(np.int64), deep=True) for a in (offsets, corners)))
+    {"verts": data.SetVerts, "lines": data.SetLines, "polys": data.SetPolys}[kind](grid)
     add_arrays(data.GetPointData() if on_points else data.GetCellData(), arrays, units)
     return data
 
