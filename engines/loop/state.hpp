@@ -126,7 +126,8 @@ void visit_state(Visitor&& visit, AState& s)
 	visit(s.rows), visit(s.inverse_masses), visit(s.index_of), visit(s.members), visit(s.body_fixed);
 	s.pairs.visit(visit);
 	visit(s.searched_at), visit(s.skin);
-	visit(s.travelled), visit(s.allowed), visit(s.drifts), visit(s.selected_at), visit(s.horizon), visit(s.pace), visit(s.selection_due);
+	visit(s.travelled), visit(s.allowed), visit(s.drifts), visit(s.selected_at), visit(s.horizon), visit(s.pace),
+		visit(s.selection_due);
 	visit(s.touches), visit(s.pushes), visit(s.guards);
 }
 

@@ -12,7 +12,7 @@ namespace {
 /// as between two neighbours.
 template <int D>
 constexpr double steps_between_searches = D == 2 ? 300 : 900;
-constexpr double smallest_skin = 0.1;           // [d]
+constexpr double smallest_skin = 0.1;  // [d]
 template <int D>
 constexpr double largest_skin = D == 2 ? 0.35 : 0.6;  // [d], measured: where grains flow, searches are rarer
 
