@@ -72,7 +72,12 @@ template <int D>
 void Stepper<D>::begin_search()
 {
 	const double d = state.typical_diameter, wanted = budgets.fastest_approach() * state.scene.dt * steps_between_searches<D>;
-	state.skin = state.scene.skin > 0 ? state.scene.skin : std::clamp(wanted, smallest_skin * d, largest_skin<D> * d);
+	double largest = largest_skin<D> * d;
+	for (int k = 0; D == 3 && k < D; ++k)  // the search needs three cells along a period
+		if (state.scene.cell.periodic[k])
+			largest = std::min(largest, 0.999 * state.scene.cell.length(k) / 3 - 2 * state.largest_free_radius);
+	const double least = smallest_skin * d;
+	state.skin = state.scene.skin > 0 ? state.scene.skin : std::clamp(wanted, least, std::max(least, largest));
 	wrap_into_cell();
 	pairs.begin_search(given_springs);
 	given_springs.clear();
