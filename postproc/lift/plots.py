@@ -11,6 +11,8 @@ from .figure import draw_body, fields_of
 
 KINDS = (("normal", "no lid"), ("lid", "lid"), ("no weight", "lid, no weight in the bulk"))
 
+LABEL_ROOM = 0.02  # of the figure's width: the labels of square maps stand outside what the layout reckons with
+
 
 def kind_of(row):
     """Return which of the paper's three runs a row is."""
@@ -62,6 +64,10 @@ def around_body(campaign, rows, claims):
         column[0].set_title(f"{kind_of(row)}, {row['depth_over_d']:.3g} D")
         for panel in column:
             draw_body(panel, campaign.run(row["run"]))
+    for panel in axes[:, 1:].flat:
+        panel.set_ylabel("")  # as in the first column
+    left, bottom, width, height = figure.get_layout_engine().get()["rect"]
+    figure.get_layout_engine().set(rect=(left + LABEL_ROOM, bottom, width - LABEL_ROOM, height))
     return figure
 
 
