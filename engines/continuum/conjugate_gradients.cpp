@@ -1,0 +1,62 @@
+/// Preconditioned conjugate gradients (Hestenes, Stiefel 1952).
+#include "engines/continuum/krylov.hpp"
+
+namespace graindrive::continuum {
+namespace {
+
+class ConjugateGradients : public KrylovSolver {
+public:
+	using KrylovSolver::KrylovSolver;
+	std::string name() const override { return preconditioner->name(); }
+
+protected:
+	void reshape(const SplitGrid& grid) override { z = direction = product = Field<double>(grid); }
+
+	int iterate(double target, int limit) override
+	{
+		int done = 0;
+		double rz_before = 0;
+		while (done < limit) {
+			preconditioner->apply(r, z);
+			const double rz = dot(matrix.grid(), matrix.spans(), r, z);
+			turn_direction(done > 0 ? rz / rz_before : 0);
+			const double curvature = matrix.multiply(direction, product);
+			if (!(rz > 0 && curvature > 0)) return done + 1;  // rounding has eaten what was left
+			++done;
+			if (go(rz / curvature) <= target) break;
+			rz_before = rz;
+		}
+		return done;
+	}
+
+private:
+	void turn_direction(double share)
+	{
+		for_packs(matrix.grid(), matrix.spans(),
+			[&](std::size_t i) { pack(direction.data() + i) = pack(z.data() + i) + share * pack(direction.data() + i); });
+	}
+
+	// Returns the new r r.
+	double go(double step)
+	{
+		Pack<double> sum = {};
+		for_packs(matrix.grid(), matrix.spans(), [&](std::size_t i) {
+			pack(x.data() + i) += step * pack(direction.data() + i);
+			const Pack<double> rest = pack(r.data() + i) - step * pack(product.data() + i);
+			pack(r.data() + i) = rest;
+			sum += rest * rest;
+		});
+		return sum_of<double>(sum);
+	}
+
+	Field<double> z, direction, product;
+};
+
+}  // namespace
+
+std::unique_ptr<PressureSolver> make_conjugate_gradients(std::unique_ptr<Preconditioner> preconditioner)
+{
+	return std::make_unique<ConjugateGradients>(std::move(preconditioner));
+}
+
+}  // namespace graindrive::continuum

@@ -1,0 +1,93 @@
+/// Loading, and products of the matrix with a vector.
+#include "engines/continuum/five_point.hpp"
+
+namespace graindrive::continuum {
+
+bool FivePoint::update(const FaceCoefficients& b)
+{
+	const double least = closed_below * checked_largest(b);
+	const bool new_shape = connected.update(b, least);
+	if (new_shape) {
+		shape.nx = b.nx, shape.ny = b.ny;
+		east = north = inverse_diagonal = Field<double>(shape);
+		row.resize(b.nx);
+	}
+	width = b.spacing;
+	load(b, least);
+	invert_diagonal();
+	return new_shape;
+}
+
+void FivePoint::load(const FaceCoefficients& b, double least)
+{
+	const int nx = shape.nx;
+	const auto keep = [&](const double* from, Field<double>& links, int y) {
+		for (int i = 0; i < nx; ++i) row[i] = from[i] > least ? from[i] : 0;
+		split_row(row.data(), nx, links.row(y, 0), links.row(y, 1));
+	};
+	for (int y = 0; y < shape.ny; ++y) {
+		if (spans()[y].first == spans()[y].last) continue;
+		keep(&b.x[std::size_t(nx + 1) * y + 1], east, y);
+		keep(&b.y[std::size_t(nx) * (y + 1)], north, y);
+	}
+}
+
+void FivePoint::invert_diagonal()
+{
+	const Pack<double> zero = {}, one = zero + 1;
+	const double *e = east.data(), *n = north.data();
+	for (int y = 0; y < shape.ny; ++y)
+		for (int parity = 0; parity < 2; ++parity) {
+			const NeighbourRows at(shape, y, parity);
+			for (int k = spans()[y].first; k < spans()[y].last; k += lanes) {
+				const Pack<double> diagonal =
+					(pack(e + at.here + k) + pack(e + at.west + k)) + (pack(n + at.here + k) + pack(n + at.south + k));
+				pack(inverse_diagonal.data() + at.here + k) = diagonal > zero ? one / diagonal : zero;
+			}
+		}
+}
+
+namespace {
+
+// Calls work(place, A u there) for all packs.
+template <class Work>
+void for_products(const FivePoint& a, const Field<double>& field, Work&& work)
+{
+	const double *e = a.east.data(), *n = a.north.data(), *u = field.data();
+	for (int y = 0; y < a.grid().ny; ++y)
+		for (int parity = 0; parity < 2; ++parity) {
+			const NeighbourRows at(a.grid(), y, parity);
+			for (int k = a.spans()[y].first; k < a.spans()[y].last; k += lanes) {
+				const Pack<double> here = pack(u + at.here + k);
+				work(at.here + k, pack(e + at.here + k) * (here - pack(u + at.east + k)) +
+									  pack(e + at.west + k) * (here - pack(u + at.west + k)) +
+									  (pack(n + at.here + k) * (here - pack(u + at.north + k)) +
+										  pack(n + at.south + k) * (here - pack(u + at.south + k))));
+			}
+		}
+}
+
+}  // namespace
+
+double FivePoint::multiply(const Field<double>& u, Field<double>& product) const
+{
+	Pack<double> sum = {};
+	for_products(*this, u, [&](std::size_t i, const Pack<double>& value) {
+		pack(product.data() + i) = value;
+		sum += value * pack(u.data() + i);
+	});
+	return sum_of<double>(sum);
+}
+
+double FivePoint::residual(const Field<double>& f, const Field<double>& u, Field<double>& r) const
+{
+	Pack<double> sum = {};
+	for_products(*this, u, [&](std::size_t i, const Pack<double>& value) {
+		const Pack<double> rest = pack(f.data() + i) - value;
+		pack(r.data() + i) = rest;
+		sum += rest * rest;
+	});
+	return sum_of<double>(sum);
+}
+
+}  // namespace graindrive::continuum

@@ -1,0 +1,25 @@
+/// Division by the diagonal, the plainest preconditioner.
+#include "engines/continuum/preconditioner.hpp"
+
+namespace graindrive::continuum {
+namespace {
+
+class Jacobi : public Preconditioner {
+public:
+	std::string name() const override { return "jacobi"; }
+	void update(const FivePoint& present, bool) override { matrix = &present; }
+	void apply(const Field<double>& r, Field<double>& z) override
+	{
+		for_packs(matrix->grid(), matrix->spans(),
+			[&](std::size_t i) { pack(z.data() + i) = pack(matrix->inverse_diagonal.data() + i) * pack(r.data() + i); });
+	}
+
+private:
+	const FivePoint* matrix = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_jacobi_preconditioner() { return std::make_unique<Jacobi>(); }
+
+}  // namespace graindrive::continuum
