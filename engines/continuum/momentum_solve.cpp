@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engines/continuum/conjugate_gradients.hpp"
+#include "engines/continuum/plain_conjugate_gradients.hpp"
 
 namespace graindrive::continuum {
 
@@ -87,7 +87,7 @@ void FullViscosity::find_diagonal(const FaceValues& inertia, const Values& eta)
 {
 	const std::size_t up = grid.stride();
 	const double scale = 1 / (grid.spacing * grid.spacing);
-	const auto node = [&](std::size_t n) { return 0.25 * (eta[n] + eta[n - 1] + eta[n - up] + eta[n - up - 1]); };
+	const auto node = [&](std::size_t n) { return at_node(eta.data(), n, up); };
 	for_rows(grid, [&](std::size_t first, std::size_t end) {
 		for (std::size_t f = first; f < end; ++f) {
 			const double here = node(f);

@@ -1,13 +1,15 @@
 /// Closed grids by the solvers of `pressure_solver.hpp`, periodic ones by conjugate gradients.
 #include "engines/continuum/pressure.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
-#include "engines/continuum/conjugate_gradients.hpp"
+#include "engines/continuum/plain_conjugate_gradients.hpp"
 
 namespace graindrive::continuum {
 
-Pressure::Pressure(const Grid& g, const std::string& name) : grid(g)
+Pressure::Pressure(const Grid& g, const std::string& name) : grid(g), has_equation(g.zeros())
 {
 	if (grid.periodic_x) {
 		if (!name.empty() && name != "jacobi")
@@ -26,6 +28,9 @@ Pressure::Pressure(const Grid& g, const std::string& name) : grid(g)
 void Pressure::update(const FaceValues& coefficients)
 {
 	const std::size_t up = grid.stride();
+	grid.for_cells([&](int, int, std::size_t c) {
+		has_equation[c] = coefficients.x[c] + coefficients.x[c + 1] + coefficients.y[c] + coefficients.y[c + up] > 0;
+	});
 	if (solver) {
 		grid.for_x_faces([&](int i, int j, std::size_t f) { closed.left(i, j) = coefficients.x[f]; });
 		grid.for_y_faces([&](int i, int j, std::size_t f) { closed.below(i, j) = coefficients.y[f]; });
@@ -39,20 +44,30 @@ void Pressure::update(const FaceValues& coefficients)
 	});
 }
 
-int Pressure::solve(const Values& right_side, Values& p, double tolerance)
+double Pressure::size_of(const Values& right_side) const
 {
+	double sum = 0;
+	grid.for_cells([&](int, int, std::size_t c) { sum += has_equation[c] * right_side[c] * right_side[c]; });
+	return std::sqrt(sum);
+}
+
+int Pressure::solve(const Values& right_side, Values& p, double tolerance, double scale)
+{
+	const double size = size_of(right_side), target = tolerance * scale;
 	int iterations = 0;
-	if (solver) {
+	if (size <= target)
+		std::fill(p.begin(), p.end(), 0.0);
+	else if (solver) {
 		std::size_t k = 0;
 		grid.for_cells([&](int, int, std::size_t c) {
-			rhs[k] = right_side[c];
+			rhs[k] = has_equation[c] * right_side[c];
 			solution[k++] = p[c];
 		});
-		iterations = solver->solve(rhs, solution, tolerance).iterations;
+		iterations = solver->solve(rhs, solution, target / size).iterations;
 		k = 0;
 		grid.for_cells([&](int, int, std::size_t c) { p[c] = solution[k++]; });
 	} else
-		iterations = solve_periodic(right_side, p, tolerance);
+		iterations = solve_periodic(right_side, p, target / size);
 	fill_ghosts(grid, p);
 	return iterations;
 }

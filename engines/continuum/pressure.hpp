@@ -15,8 +15,11 @@ public:
 
 	/// b = chi/rho on faces; once a step.
 	void update(const FaceValues& coefficients);
-	/// `p` in: first guess, out: solution, ghosts filled. Returns the number of iterations.
-	int solve(const Values& right_side, Values& p, double tolerance);
+	/// The norm of a right side, over the cells that have an equation.
+	double size_of(const Values& right_side) const;
+	/// Until the norm of the residual is at most `tolerance` `scale`. `p` in: first guess, out: solution, ghosts filled; 0 where the right
+	/// side is as small as that itself. Returns the number of iterations.
+	int solve(const Values& right_side, Values& p, double tolerance, double scale);
 
 	std::string name() const { return solver ? solver->name() : "jacobi"; }
 
@@ -26,9 +29,10 @@ private:
 	FaceCoefficients closed;
 	std::vector<double> rhs, solution;
 	FaceValues periodic;
+	Values has_equation;
 	Values rest, direction, image, preconditioned, over_diagonal;
 
-	int solve_periodic(const Values& right_side, Values& p, double tolerance);
+	int solve_periodic(const Values& right_side, Values& p, double target);
 };
 
 }  // namespace graindrive::continuum

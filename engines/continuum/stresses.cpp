@@ -64,8 +64,7 @@ void viscous_force(const Grid& grid, const Rates& rates, const Values& viscosity
 		xx[c] = 2 * eta[c] * rate_xx[c];
 		yy[c] = 2 * eta[c] * rate_yy[c];
 	});
-	for_nodes(grid,
-		[&](std::size_t n) { xy[n] = 0.25 * (eta[n] + eta[n - 1] + eta[n - up] + eta[n - up - 1]) * rate_xy[n]; });
+	for_nodes(grid, [&](std::size_t n) { xy[n] = at_node(eta, n, up) * rate_xy[n]; });
 	double *fx = force.x.data(), *fy = force.y.data();
 	for (int j = 0; j < grid.ny; ++j)
 		for (std::size_t f = grid.at(0, j), end = f + std::size_t(grid.nx); f < end; ++f) {

@@ -50,6 +50,11 @@ void extrapolate(Values& present, Values& before)
 	}
 }
 
+void add_in_cells(const Grid& grid, const Values& what, Values& to)
+{
+	grid.for_cells([&](int, int, std::size_t c) { to[c] += what[c]; });
+}
+
 }  // namespace
 
 TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
@@ -216,8 +221,9 @@ void TwoPhaseFlow::find_pressure()
 	if (g.periodic_x)
 		for (int j = 0; j < g.ny; ++j) given.x[g.at(g.nx, j)] = given.x[g.at(0, j)];
 	divergence(g, given, scratch);
+	right_side_size = pressures.size_of(scratch);
 	extrapolate(now.pressure, now.pressure_before);
-	last.pressure_iterations = pressures.solve(scratch, now.pressure, how.tolerance);
+	last.pressure_iterations = pressures.solve(scratch, now.pressure, how.tolerance, right_side_size);
 	set_pressure_level();
 }
 
@@ -291,33 +297,31 @@ void TwoPhaseFlow::predict_full()
 	last.viscous_iterations = full.solve(inertia, viscosity, given, predicted, how.viscous_tolerance).iterations;
 }
 
-/// div(chi/rho grad sigma) = div v*/dt; v = v* - dt chi/rho grad sigma; S += sigma - nu_0 dt/2 laplace sigma: (38), (44), (45).
+/// div(chi/rho grad sigma) = div v*/dt; v = v* - dt chi/rho grad sigma; S += sigma - nu_0/2 rho div v*: (38), (44), (45).
+///
+/// In a fluid of one density the last term is (38)'s nu_0 dt/2 laplace sigma. Across a surface sigma has a kink, of which (38) makes
+/// spikes in S that grow without bound at a ratio of densities of 1000.
 void TwoPhaseFlow::project()
 {
 	const double dt = how.time_step, over_spacing = 1 / g.spacing;
 	if (g.periodic_x)
 		for (int j = 0; j < g.ny; ++j) predicted.x[g.at(g.nx, j)] = predicted.x[g.at(0, j)];
 	divergence(g, predicted, scratch);
-	for (double& value : scratch) value /= dt;
+	const double rotational = how.viscosity == Viscosity::split ? 0.5 * nu_0() : 0;
+	g.for_cells([&](int, int, std::size_t c) {
+		now.potential[c] -= d.fluid[c] * rotational * density[c] * scratch[c];
+		scratch[c] /= dt;
+	});
 	Values& sigma = now.potential_change;
 	extrapolate(sigma, now.potential_change_before);
-	last.potential_iterations = pressures.solve(scratch, sigma, how.tolerance);
+	last.potential_iterations = pressures.solve(scratch, sigma, how.tolerance, right_side_size);
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t next) {
 		component(now.velocity)[f] = component(predicted)[f] -
 			dt * component(d.open)[f] * component(over_density)[f] * over_spacing * (sigma[f] - sigma[f - next]);
 	});
 	fill_ghosts(g, now.velocity, how.edge);
 	now.advection_before = advected;
-	const double spread = how.viscosity == Viscosity::split ? 0.5 * dt * nu_0() * over_spacing * over_spacing : 0;
-	const std::size_t up = g.stride();
-	const auto across = [&](const Values& open, std::size_t f, std::size_t c, std::size_t other) {
-		return open[f] > 0 ? sigma[other] - sigma[c] : 0;
-	};
-	g.for_cells([&](int, int, std::size_t c) {
-		const double laplace = across(d.open.x, c, c, c - 1) + across(d.open.x, c + 1, c, c + 1) + across(d.open.y, c, c, c - up) +
-			across(d.open.y, c + up, c, c + up);
-		now.potential[c] += sigma[c] - spread * laplace;
-	});
+	add_in_cells(g, sigma, now.potential);
 	fill_ghosts(g, now.potential);
 }
 

@@ -29,7 +29,7 @@ struct FlowSettings {
 	double gravity_x = 0, gravity_y = 0;
 	Viscosity viscosity = Viscosity::split;
 	double implicit_share = 0.5;  ///< nu_0 over eta_gas/rho_gas + eta_max/rho (split only); the paper's is 1/2
-	double tolerance = 1e-5;      ///< of the pressures' residuals
+	double tolerance = 1e-5;      ///< of both pressures' residuals, against the right side of p's equation
 	double viscous_tolerance = 1e-6;
 	double sharpness = 3.5;  ///< see VolumeOfFluid
 	Edge edge = Edge::slips;
@@ -118,6 +118,7 @@ private:
 	Pressure pressures;
 	Rates rates, stresses;
 	Values rate, viscosity, density, scratch;
+	double right_side_size = 0;  ///< of the pressure's equation: what residuals are small against
 	FaceValues over_density, advected, viscous, given, predicted, change, inertia;
 
 	void check() const;

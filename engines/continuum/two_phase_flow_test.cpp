@@ -1,0 +1,344 @@
+/// Flows with closed forms: rest, rigid rotation, decaying vortices, channels of three fluids, and a fall of grains down an incline.
+#include "engines/continuum/two_phase_flow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace graindrive::continuum {
+namespace {
+
+double full_of_it(double, double) { return 1; }
+
+/// Solid below y = 0 and, if `top` is finite, above it.
+Distance channel(double top)
+{
+	return [top](double, double y) { return std::min(y, top - y); };
+}
+
+/// Velocity along x by height in the column i.
+template <class Compare>
+void for_column(const TwoPhaseFlow& flow, int i, double low, double high, Compare&& compare)
+{
+	const Grid& grid = flow.grid();
+	for (int j = 0; j < grid.ny; ++j)
+		if (grid.centre_y(j) > low && grid.centre_y(j) < high)
+			compare(grid.centre_y(j), flow.state().velocity.x[grid.at(i, j)], grid.at(i, j));
+}
+
+// ---- rest
+
+Fluids granular()
+{
+	Fluids fluids;
+	const double grain = 4 / pi;
+	fluids.rheology = laws::GranularFluid<laws::MuOfI>{ laws::MuOfI(), std::sqrt(grain) };
+	fluids.density = 0.825 * grain;
+	fluids.gas_density = 1e-3 * fluids.density;
+	fluids.largest_viscosity = 8000;
+	fluids.gas_viscosity = 8e-3;
+	return fluids;
+}
+
+/// A drum of 24 cells across, half full.
+struct Drum {
+	double diameter = 48, spacing = 2, spin = 0, gravity = -1;
+	Grid grid{ 40, 40, 2, -40, -40, false };
+
+	TwoPhaseFlow flow(const Fluids& fluids, const FlowSettings& given, const std::function<double(double, double)>& fraction) const
+	{
+		FlowSettings how = given;
+		how.gravity_y = gravity;
+		const double radius = diameter / 2;
+		const Domain domain(
+			grid, [radius](double x, double y) { return radius - std::hypot(x, y); }, 2 * spacing, { 0, 0, spin, 0, 0 });
+		return TwoPhaseFlow(grid, domain, fluids, how, fraction);
+	}
+};
+
+double below_middle(double, double y) { return y < 0; }
+
+double fastest(const TwoPhaseFlow& flow)
+{
+	double most = 0;
+	for (const Values* part : { &flow.state().velocity.x, &flow.state().velocity.y })
+		for (const double value : *part) most = std::max(most, std::abs(value));
+	return most;
+}
+
+TEST(TwoPhaseFlow, grains_at_rest_below_gas_stay_at_rest)
+{
+	for (const Viscosity viscosity : { Viscosity::split, Viscosity::full }) {
+		FlowSettings how;
+		how.viscosity = viscosity;
+		how.time_step = viscosity == Viscosity::full ? 0.02 : 1e-4;
+		TwoPhaseFlow flow = Drum().flow(granular(), how, below_middle);
+		flow.advance(300);
+		// The wall's staircase bends the surfaces of equal pressure by what the tolerance of the pressure leaves, 1e-5 of g dt a step.
+		EXPECT_LT(fastest(flow), 1e-4);
+		const Grid& grid = flow.grid();
+		const double rho_g = flow.fluids().density;
+		for (const int j : { 12, 16, 19 })
+			EXPECT_NEAR(flow.state().pressure[grid.at(20, j)], -rho_g * grid.centre_y(j), 2e-3 * 24) << "height " << j;
+	}
+}
+
+TEST(TwoPhaseFlow, a_full_drum_turns_as_a_rigid_body_with_the_pressure_of_gravity_and_rotation)
+{
+	Drum drum;
+	drum.spin = 0.05;
+	Fluids fluids = granular();
+	fluids.rheology = laws::NewtonianFluid{ 50 };
+	fluids.largest_viscosity = 50;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.05;
+	how.tolerance = how.viscous_tolerance = 1e-9;
+	TwoPhaseFlow flow = drum.flow(fluids, how, full_of_it);
+	flow.advance(1500);  // 75 = 6 times the viscous time rho R^2/(5.8 eta)... of the slowest mode
+	const Grid& grid = flow.grid();
+	const Values &p = flow.state().pressure, &u = flow.state().velocity.x;
+	const double rho = fluids.density, middle = p[grid.at(20, 20)], y_0 = grid.centre_y(20), x_0 = grid.centre_x(20);
+	const auto exact = [&](double x, double y) {
+		return 0.5 * rho * drum.spin * drum.spin * (x * x + y * y) - rho * y;
+	};
+	for (const int j : { 12, 16, 20, 24, 27 }) {
+		EXPECT_NEAR(u[grid.at(20, j)], -drum.spin * grid.centre_y(j), 1e-4 * drum.spin * 24);
+		const double y = grid.centre_y(j);
+		EXPECT_NEAR(p[grid.at(20, j)] - middle, exact(x_0, y) - exact(x_0, y_0), 1e-3 * rho * 24) << "height " << j;
+	}
+}
+
+// ---- decay
+
+/// Largest error of u after `time` for a Taylor-Green vortex in a closed square that slips, n cells a side, steps of `share` spacing.
+double taylor_green(int n, double share, Viscosity viscosity)
+{
+	const double nu = 0.05, time = 0.5;
+	Fluids fluids;
+	fluids.rheology = laws::NewtonianFluid{ nu };
+	fluids.largest_viscosity = nu;
+	fluids.density = 1;
+	fluids.gas_density = 1;
+	fluids.gas_viscosity = nu;
+	const Grid grid{ n, n, 1.0 / n, 0, 0, false };
+	FlowSettings how;
+	how.viscosity = viscosity;
+	const int steps = int(std::ceil(time / (share / n)));
+	how.time_step = time / steps;
+	how.tolerance = how.viscous_tolerance = 1e-10;
+	TwoPhaseFlow flow(grid, Domain(grid), fluids, how, full_of_it);
+	FlowState start = flow.state();
+	for (int j = 0; j <= n; ++j)
+		for (int i = 0; i <= n; ++i) {
+			if (j < n) start.velocity.x[grid.at(i, j)] = std::sin(pi * grid.face_x(i)) * std::cos(pi * grid.centre_y(j));
+			if (i < n) start.velocity.y[grid.at(i, j)] = -std::cos(pi * grid.centre_x(i)) * std::sin(pi * grid.face_y(j));
+		}
+	fill_ghosts(grid, start.velocity, Edge::slips);
+	advection(grid, start.velocity, start.advection_before);
+	// p = (cos 2 pi x + cos 2 pi y)/4 of this flow
+	grid.for_cells([&](int i, int j, std::size_t c) {
+		start.potential[c] = 0.25 * (std::cos(2 * pi * grid.centre_x(i)) + std::cos(2 * pi * grid.centre_y(j)));
+	});
+	fill_ghosts(grid, start.potential);
+	flow.restore(start);
+	flow.advance(steps);
+	const double decay = std::exp(-2 * nu * pi * pi * time);
+	double error = 0;
+	grid.for_x_faces([&](int i, int j, std::size_t f) {
+		const double exact = decay * std::sin(pi * grid.face_x(i)) * std::cos(pi * grid.centre_y(j));
+		error = std::max(error, std::abs(flow.state().velocity.x[f] - exact));
+	});
+	return error;
+}
+
+TEST(TwoPhaseFlow, a_taylor_green_vortex_decays_to_second_order)
+{
+	const double coarse = taylor_green(16, 0.1, Viscosity::split), fine = taylor_green(32, 0.1, Viscosity::split);
+	EXPECT_LT(fine, 2e-3);
+	EXPECT_NEAR(std::log2(coarse / fine), 2, 0.25);
+}
+
+TEST(TwoPhaseFlow, the_implicit_viscosity_is_of_first_order_in_time)
+{
+	const double coarse = taylor_green(32, 0.4, Viscosity::full), fine = taylor_green(32, 0.2, Viscosity::full);
+	EXPECT_LT(fine, 3e-2);
+	EXPECT_NEAR(std::log2(coarse / fine), 1, 0.35);
+}
+
+// ---- channels
+
+/// A periodic channel of height 1 between walls at rest, driven by gravity 1 along x, until steady.
+TwoPhaseFlow steady_channel(const Fluids& fluids, int n, double time, double dt)
+{
+	const double h = 1.0 / n;
+	const int margin = 4;
+	const Grid grid{ 4, n + 2 * margin, h, 0, -margin * h, true };
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = dt;
+	how.gravity_x = 1;
+	how.viscous_tolerance = 1e-9;
+	const Domain domain(grid, channel(1), 0.5 * h, {});
+	TwoPhaseFlow flow(grid, domain, fluids, how, full_of_it);
+	flow.advance(long(std::ceil(time / dt)));
+	return flow;
+}
+
+Fluids one_fluid(const laws::Rheology& rheology, double largest)
+{
+	Fluids fluids;
+	fluids.rheology = rheology;
+	fluids.largest_viscosity = largest;
+	fluids.gas_density = fluids.density;
+	return fluids;
+}
+
+TEST(TwoPhaseFlow, poiseuille_flow_in_a_channel)
+{
+	const double eta = 0.5;
+	const TwoPhaseFlow flow = steady_channel(one_fluid(laws::NewtonianFluid{ eta }, eta), 32, 3, 0.02);
+	const double peak = 1 / (8 * eta);
+	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) { EXPECT_NEAR(u, y * (1 - y) / (2 * eta), 0.03 * peak); });
+}
+
+TEST(TwoPhaseFlow, bingham_flow_in_a_channel_has_a_plug)
+{
+	const double yield = 0.2, eta = 0.2;
+	const TwoPhaseFlow flow = steady_channel(one_fluid(laws::BinghamFluid{ yield, eta }, 1e3), 32, 4, 0.02);
+	const double peak = (0.5 - yield) * (0.5 - yield) / (2 * eta);
+	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) {
+		const double from_wall = std::min(y, 1 - y), sheared = 0.5 - yield;
+		const double exact = from_wall < sheared ? (sheared * sheared - (sheared - from_wall) * (sheared - from_wall)) / (2 * eta) : peak;
+		EXPECT_NEAR(u, exact, 0.03 * peak) << "at " << y;
+	});
+}
+
+// ---- incline
+
+/// Grains of depth H on an incline, by the inertial number I that mu(I) = tan(angle) asks for:
+/// u = 2/3 I sqrt(phi g cos) (H^3/2 - (H - y)^3/2)/d, GDR MiDi (2004); p = phi rho_s g cos (H - y).
+TEST(TwoPhaseFlow, grains_flow_down_an_incline_as_bagnold_says)
+{
+	const double angle = 0.32, depth = 20, h = 0.5;
+	Fluids fluids = granular();
+	fluids.gas_density = 1e-3 * fluids.density;
+	fluids.gas_viscosity = 1e-4;
+	const Grid grid{ 4, 56, h, 0, -2, true };
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.05;
+	how.gravity_x = std::sin(angle);
+	how.gravity_y = -std::cos(angle);
+	how.viscous_tolerance = 1e-9;
+	const Domain domain(grid, channel(1e3), 0.5 * h, {});
+	TwoPhaseFlow flow(grid, domain, fluids, how, [&](double, double y) { return y < depth; });
+	const laws::FrictionConstants c;
+	const double mu = std::tan(angle), I = c.I_0 * (mu - c.mu_s) / (c.mu_2 - mu);
+	const double phi_g = 0.825 * std::cos(angle);
+	const auto bagnold = [&](double y) {
+		return 2.0 / 3.0 * I * std::sqrt(phi_g) * (std::pow(depth, 1.5) - std::pow(depth - y, 1.5));
+	};
+	// Start near the answer: the slowest mode takes rho H^2/eta, hundreds of times longer than this run.
+	FlowState start = flow.state();
+	grid.for_cells([&](int i, int j, std::size_t) {
+		const double y = grid.centre_y(j);
+		start.velocity.x[grid.at(i, j)] = y < 0 ? 0 : 0.9 * bagnold(std::min(y, depth));
+	});
+	fill_ghosts(grid, start.velocity, how.edge);
+	flow.restore(start);
+	flow.advance(8000);
+	for_column(flow, 1, 1, 18, [&](double y, double u, std::size_t c_) {
+		EXPECT_NEAR(u, bagnold(y), 0.02 * bagnold(depth)) << "at " << y;
+		EXPECT_NEAR(flow.state().pressure[c_], fluids.density * std::cos(angle) * (depth - y), 0.02 * fluids.density * depth);
+	});
+}
+
+// ---- keeping
+
+TEST(TwoPhaseFlow, a_turning_drum_keeps_the_area_of_the_grains)
+{
+	Drum drum;
+	drum.spin = 0.02;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.05;
+	TwoPhaseFlow flow = drum.flow(granular(), how, [](double x, double y) { return y < 0 || std::hypot(x, y) > 20; });
+	const double before = area_of(flow.grid(), flow.state().fraction);
+	flow.advance(600);
+	EXPECT_NEAR(area_of(flow.grid(), flow.state().fraction) / before, 1, 1e-10);
+}
+
+TEST(TwoPhaseFlow, a_restored_state_goes_on_with_the_same_bits)
+{
+	Drum drum;
+	drum.spin = 0.02;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.05;
+	TwoPhaseFlow one = drum.flow(granular(), how, below_middle), other = drum.flow(granular(), how, below_middle);
+	one.advance(31);
+	other.restore(one.state());
+	one.advance(30);
+	other.advance(30);
+	FlowState a = one.state(), b = other.state();
+	EXPECT_EQ(a.steps, b.steps);
+	EXPECT_EQ(a.velocity.x, b.velocity.x);
+	EXPECT_EQ(a.fraction, b.fraction);
+	EXPECT_EQ(a.pressure, b.pressure);
+}
+
+TEST(TwoPhaseFlow, no_divergence_is_left_in_the_fluid)
+{
+	Drum drum;
+	drum.spin = 0.02;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.05;
+	how.tolerance = 1e-8;
+	TwoPhaseFlow flow = drum.flow(granular(), how, below_middle);
+	flow.advance(100);
+	Values left = flow.grid().zeros();
+	divergence(flow.grid(), flow.state().velocity, left);
+	double most = 0;
+	flow.grid().for_cells([&](int, int, std::size_t c) {
+		if (flow.domain().cell_open[c] > 0) most = std::max(most, std::abs(left[c]));
+	});
+	EXPECT_LT(most, 1e-6 * fastest(flow) / flow.grid().spacing);
+}
+
+// ---- refusals
+
+TEST(TwoPhaseFlow, refuses_what_cannot_be)
+{
+	const auto refused = [](auto&& change) {
+		Fluids fluids = granular();
+		FlowSettings how;
+		change(fluids, how);
+		EXPECT_THROW(Drum().flow(fluids, how, below_middle), std::invalid_argument);
+	};
+	refused([](Fluids& f, FlowSettings&) { f.density = 0; });
+	refused([](Fluids& f, FlowSettings&) { f.gas_density = 2; });
+	refused([](Fluids& f, FlowSettings&) { f.gas_viscosity = -1; });
+	refused([](Fluids& f, FlowSettings&) { f.largest_viscosity = std::nan(""); });
+	refused([](Fluids&, FlowSettings& h) { h.time_step = 0; });
+	refused([](Fluids&, FlowSettings& h) { h.time_step = 1e-2; });  // above the explicit bound
+	refused([](Fluids&, FlowSettings& h) { h.tolerance = 0; });
+	refused([](Fluids&, FlowSettings& h) { h.pressure_solver = "guess"; });
+	EXPECT_THROW(Drum().flow(granular(), {}, [](double, double) { return 2.0; }), std::invalid_argument);
+}
+
+TEST(TwoPhaseFlow, says_when_the_flow_is_too_fast_for_the_step)
+{
+	Drum drum;
+	drum.gravity = -1000;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	how.time_step = 0.1;
+	TwoPhaseFlow flow = drum.flow(granular(), how, [](double x, double) { return x < 0; });
+	EXPECT_THROW(flow.advance(200), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace graindrive::continuum
