@@ -22,5 +22,7 @@ public:
 
 /// Division by the diagonal.
 std::unique_ptr<Preconditioner> make_jacobi_preconditioner();
+/// A cycle of multigrid.
+std::unique_ptr<Preconditioner> make_multigrid_preconditioner();
 
 }  // namespace graindrive::continuum

@@ -14,13 +14,14 @@ struct Named {
 };
 
 const Named table[] = {
+	{ "multigrid", [] { return make_conjugate_gradients(make_multigrid_preconditioner()); } },
 	{ "jacobi", [] { return make_conjugate_gradients(make_jacobi_preconditioner()); } },
 	{ "bicgstab", [] { return make_bicgstab(make_jacobi_preconditioner()); } },
 };
 
 }  // namespace
 
-std::string default_pressure_solver() { return "jacobi"; }
+std::string default_pressure_solver() { return "multigrid"; }
 
 std::vector<std::string> pressure_solvers()
 {

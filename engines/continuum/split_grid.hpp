@@ -130,6 +130,22 @@ void merge_row(const Real* even, const Real* odd, int n, double* row)
 	if (n & 1) row[n - 1] = even[pairs];
 }
 
+/// The same for the packs of a span, whose row in natural order has room for whole packs.
+inline void split_span(const double* row, const Span& span, double* even, double* odd)
+{
+	for (int k = span.first; k < span.last; ++k) {
+		even[k] = row[2 * k];
+		odd[k] = row[2 * k + 1];
+	}
+}
+inline void merge_span(const double* even, const double* odd, const Span& span, double* row)
+{
+	for (int k = span.first; k < span.last; ++k) {
+		row[2 * k] = even[k];
+		row[2 * k + 1] = odd[k];
+	}
+}
+
 /// Calls `work(offset)` for each pack of open cells, row by row.
 template <class Work>
 void for_packs(const SplitGrid& grid, const std::vector<Span>& spans, Work&& work)

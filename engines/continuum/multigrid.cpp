@@ -1,0 +1,436 @@
+/// Coarsening and the cycle.
+#include "engines/continuum/multigrid.hpp"
+
+namespace graindrive::continuum {
+namespace {
+
+using Lanes = Pack<double>;
+
+// What a kernel reads of an operator; the finest has no diagonal links.
+struct Links {
+	const SplitGrid* grid;
+	const std::vector<Span>* spans;
+	const double *east, *north, *north_east, *north_west, *inverse;
+};
+
+Links links_of(const FivePoint& a) { return { &a.grid(), &a.spans(), a.east.data(), a.north.data(), nullptr, nullptr, a.inverse_diagonal.data() }; }
+Links links_of(const NinePoint& a)
+{
+	return { &a.grid, &a.spans, a.east.data(), a.north.data(), a.north_east.data(), a.north_west.data(), a.inverse_diagonal.data() };
+}
+
+// Sums of link times neighbour, by kind of neighbour.
+struct Neighbours : NeighbourRows {
+	std::size_t north_west, north_east, south_west, south_east;
+	Neighbours(const SplitGrid& grid, int y, int parity)
+		: NeighbourRows(grid, y, parity), north_west(grid.offset(y + 1, 1 - parity) + parity - 1), north_east(north_west + 1),
+		  south_west(grid.offset(y - 1, 1 - parity) + parity - 1), south_east(south_west + 1)
+	{
+	}
+	Lanes of_row(const Links& a, const double* u, int k) const
+	{
+		return pack(a.east + here + k) * pack(u + east + k) + pack(a.east + west + k) * pack(u + west + k);
+	}
+	Lanes of_column(const Links& a, const double* u, int k) const
+	{
+		return pack(a.north + here + k) * pack(u + north + k) + pack(a.north + south + k) * pack(u + south + k);
+	}
+	Lanes of_diagonals(const Links& a, const double* u, int k) const
+	{
+		return (pack(a.north_east + here + k) * pack(u + north_east + k) + pack(a.north_east + south_west + k) * pack(u + south_west + k)) +
+			   (pack(a.north_west + here + k) * pack(u + north_west + k) + pack(a.north_west + south_east + k) * pack(u + south_east + k));
+	}
+};
+
+enum Kinds { none = 0, row = 1, column = 2, diagonals = 4, all = 7 };
+
+template <int kinds>
+Lanes gather(const Neighbours& at, const Links& a, const double* u, int k)
+{
+	Lanes sum = {};
+	if constexpr (kinds & row) sum += at.of_row(a, u, k);
+	if constexpr (kinds & column) sum += at.of_column(a, u, k);
+	if constexpr (kinds & diagonals) sum += at.of_diagonals(a, u, k);
+	return sum;
+}
+
+// Calls work(neighbours, k) for the packs of the cells with the parity of x in the rows `first`, `first` + 2, ...
+template <class Work>
+void for_colour(const Links& a, int parity, int first, Work&& work)
+{
+	for (int y = first; y < a.grid->ny; y += 2) {
+		const Neighbours at(*a.grid, y, parity);
+		const Span span = (*a.spans)[y];
+		for (int k = span.first; k < span.last; k += lanes) work(at, k);
+	}
+}
+
+// Gauss-Seidel on one of four colours; neighbours of other kinds are known to be 0.
+template <int kinds>
+void relax(const Links& a, const double* f, double* u, int parity, int first)
+{
+	for_colour(a, parity, first, [&](const Neighbours& at, int k) {
+		const std::size_t i = at.here + k;
+		pack(u + i) = (pack(f + i) + gather<kinds>(at, a, u, k)) * pack(a.inverse + i);
+	});
+}
+
+// What changed the residual of a colour after it was relaxed: its neighbours of some kinds, which were 0 then.
+template <int kinds>
+void residual(const Links& a, const double* u, double* rest, int parity, int first)
+{
+	for_colour(a, parity, first, [&](const Neighbours& at, int k) { pack(rest + at.here + k) = gather<kinds>(at, a, u, k); });
+}
+
+// Places of the colours: parity of x, parity of y. On the finest grid the first two are not linked, nor are the last two.
+// From u = 0, forwards; what is left is 0 on the last colour.
+void sweep_first(const Links& a, const double* f, double* u, double* rest)
+{
+	relax<none>(a, f, u, 0, 0);
+	if (!a.north_east) {
+		relax<none>(a, f, u, 1, 1);
+		relax<row | column>(a, f, u, 1, 0);
+		relax<row | column>(a, f, u, 0, 1);
+		residual<row | column>(a, u, rest, 0, 0);
+		residual<row | column>(a, u, rest, 1, 1);
+		return;
+	}
+	relax<diagonals>(a, f, u, 1, 1);
+	relax<row | column>(a, f, u, 1, 0);
+	relax<all>(a, f, u, 0, 1);
+	residual<all>(a, u, rest, 0, 0);
+	residual<row | column>(a, u, rest, 1, 1);
+	residual<diagonals>(a, u, rest, 1, 0);
+}
+
+// Backwards.
+void sweep_last(const Links& a, const double* f, double* u)
+{
+	if (!a.north_east) {
+		relax<row | column>(a, f, u, 0, 1);
+		relax<row | column>(a, f, u, 1, 0);
+		relax<row | column>(a, f, u, 1, 1);
+		relax<row | column>(a, f, u, 0, 0);
+		return;
+	}
+	relax<all>(a, f, u, 0, 1);
+	relax<all>(a, f, u, 1, 0);
+	relax<all>(a, f, u, 1, 1);
+	relax<all>(a, f, u, 0, 0);
+}
+
+Span both(const Span& a, const Span& b)
+{
+	if (a.first == a.last) return b;
+	if (b.first == b.last) return a;
+	return { std::min(a.first, b.first), std::max(a.last, b.last) };
+}
+
+Span span_or_none(const Links& a, int y) { return y < a.grid->ny ? (*a.spans)[y] : Span{}; }
+
+// f of the coarse grid = P^T rest, in natural order. `rows`: rest is not 0 on rows of coarse cells between them.
+template <bool rows>
+void restrict_to(const Links& a, const Interpolation& p, const double* rest, PlainField& f, int coarse_ny)
+{
+	for (int y = 0; y < coarse_ny; ++y) {
+		const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
+					 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
+		const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y), *south_east = p.south_east.row(y),
+					 *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
+		double* to = f.row(y);
+		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+			Lanes sum = pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
+										   (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
+			if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
+			pack(to + k) = sum;
+		}
+	}
+}
+
+// u += P correction, where the sweep that follows does not begin.
+template <bool rows>
+void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int coarse_ny)
+{
+	for (int y = 0; y < coarse_ny; ++y) {
+		const double *c = correction.row(y), *above = correction.row(y + 1);
+		double *here = u + a.grid->offset(2 * y, 0), *beside = u + a.grid->offset(2 * y, 1), *middle = u + a.grid->offset(2 * y + 1, 1);
+		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+			pack(here + k) += pack(c + k);
+			if constexpr (rows) pack(beside + k) += pack(p.west.row(y) + k) * pack(c + k) + pack(p.east.row(y) + k) * pack(c + k + 1);
+		}
+		const Span span = span_or_none(a, 2 * y + 1);
+		for (int k = span.first; k < span.last; k += lanes)
+			pack(middle + k) += (pack(p.south_west.row(y) + k) * pack(c + k) + pack(p.south_east.row(y) + k) * pack(c + k + 1)) +
+								(pack(p.north_west.row(y) + k) * pack(above + k) + pack(p.north_east.row(y) + k) * pack(above + k + 1));
+	}
+}
+
+// a/(a + b), 0 where both are closed.
+Lanes share(const Lanes& part, const Lanes& whole)
+{
+	const Lanes zero = {};
+	return whole > zero ? part / whole : zero;
+}
+
+Lanes positive(const Lanes& a)
+{
+	const Lanes zero = {};
+	return a > zero ? a : zero;
+}
+
+// Between two coarse cells each counts by its links (of three kinds on a nine-point grid) towards the cell in between.
+template <bool nine>
+void interpolate_rows(const Links& a, Interpolation& p, int y)
+{
+	const Neighbours at(*a.grid, 2 * y, 1);
+	const Span span = (*a.spans)[2 * y];
+	for (int k = span.first; k < span.last; k += lanes) {
+		Lanes west = pack(a.east + at.west + k), east = pack(a.east + at.here + k);
+		if constexpr (nine) {
+			west = positive(west + pack(a.north_west + at.here + k) + pack(a.north_east + at.south_west + k));
+			east = positive(east + pack(a.north_east + at.here + k) + pack(a.north_west + at.south_east + k));
+		}
+		pack(p.west.row(y) + k) = share(west, west + east);
+		pack(p.east.row(y) + k) = share(east, west + east);
+	}
+}
+
+template <bool nine>
+void interpolate_columns(const Links& a, Interpolation& p, int y)
+{
+	const Neighbours at(*a.grid, 2 * y + 1, 0);
+	const Span span = span_or_none(a, 2 * y + 1);
+	for (int k = span.first; k < span.last; k += lanes) {
+		Lanes south = pack(a.north + at.south + k), north = pack(a.north + at.here + k);
+		if constexpr (nine) {
+			south = positive(south + pack(a.north_east + at.south_west + k) + pack(a.north_west + at.south_east + k));
+			north = positive(north + pack(a.north_east + at.here + k) + pack(a.north_west + at.here + k));
+		}
+		pack(p.south.row(y) + k) = share(south, south + north);
+		pack(p.north.row(y) + k) = share(north, south + north);
+	}
+}
+
+// In the middle: from all neighbours, those between coarse cells replaced by what they take.
+template <bool nine>
+void interpolate_middles(const Links& a, Interpolation& p, int y)
+{
+	const Neighbours at(*a.grid, 2 * y + 1, 1);
+	const Span span = span_or_none(a, 2 * y + 1);
+	for (int k = span.first; k < span.last; k += lanes) {
+		const Lanes west = pack(a.east + at.west + k), east = pack(a.east + at.here + k), south = pack(a.north + at.south + k),
+					north = pack(a.north + at.here + k);
+		Lanes sw = west * pack(p.south.row(y) + k) + south * pack(p.west.row(y) + k),
+			  se = east * pack(p.south.row(y) + k + 1) + south * pack(p.east.row(y) + k),
+			  nw = west * pack(p.north.row(y) + k) + north * pack(p.west.row(y + 1) + k),
+			  ne = east * pack(p.north.row(y) + k + 1) + north * pack(p.east.row(y + 1) + k);
+		if constexpr (nine) {
+			sw = positive(sw + pack(a.north_east + at.south_west + k));
+			se = positive(se + pack(a.north_west + at.south_east + k));
+			nw = positive(nw + pack(a.north_west + at.here + k));
+			ne = positive(ne + pack(a.north_east + at.here + k));
+		}
+		const Lanes whole = (sw + se) + (nw + ne);
+		pack(p.south_west.row(y) + k) = share(sw, whole);
+		pack(p.south_east.row(y) + k) = share(se, whole);
+		pack(p.north_west.row(y) + k) = share(nw, whole);
+		pack(p.north_east.row(y) + k) = share(ne, whole);
+	}
+}
+
+template <bool nine>
+void interpolate(const Links& a, Interpolation& p, int coarse_ny)
+{
+	for (int y = 0; y < coarse_ny; ++y) interpolate_rows<nine>(a, p, y);
+	for (int y = 0; y < coarse_ny; ++y) {
+		interpolate_columns<nine>(a, p, y);
+		interpolate_middles<nine>(a, p, y);
+	}
+}
+
+// Fine cells around eight coarse cells in a row; (dx, dy) counts fine cells from the coarse cells (k, y).
+struct Around {
+	const Links& a;
+	const Interpolation& p;
+	int y, k;
+
+	static int parity(int dx) { return dx & 1; }
+	static int shift(int dx) { return (dx - (dx & 1)) / 2; }
+	std::size_t place(int dx, int dy) const { return a.grid->offset(2 * y + dy, parity(dx)) + k + shift(dx); }
+
+	// The link between (dx, dy) and (dx + ax, dy + ay).
+	Lanes link(int dx, int dy, int ax, int ay) const
+	{
+		if (ay < 0 || (ay == 0 && ax < 0)) return link(dx + ax, dy + ay, -ax, -ay);
+		const double* links = ay == 0 ? a.east : ax == 0 ? a.north : ax > 0 ? a.north_east : a.north_west;
+		return pack(links + place(dx, dy));
+	}
+
+	// What (dx, dy) takes of the coarse cell (k, y) + (cx, cy).
+	Lanes weight(int dx, int dy, int cx, int cy) const
+	{
+		const Lanes zero = {};
+		dx -= 2 * cx, dy -= 2 * cy;
+		if (dx < -1 || dx > 1 || dy < -1 || dy > 1) return zero;
+		if (dx == 0 && dy == 0) return zero + 1;
+		const PlainField& of = dy == 0 ? (dx > 0 ? p.west : p.east)
+							 : dx == 0 ? (dy > 0 ? p.south : p.north)
+							 : dy > 0  ? (dx > 0 ? p.south_west : p.south_east)
+									   : (dx > 0 ? p.north_west : p.north_east);
+		return pack(of.row(y + cy + (dy < 0 ? -1 : 0)) + k + cx + (dx < 0 ? -1 : 0));
+	}
+};
+
+// A times the column of P that belongs to the coarse cells, at (dx, dy).
+template <bool nine>
+inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int dx, int dy)
+{
+	const Lanes here = cells.weight(dx, dy, 0, 0);
+	Lanes sum = {};
+#pragma GCC unroll 3
+	for (int ay = -1; ay <= 1; ++ay)
+#pragma GCC unroll 3
+		for (int ax = -1; ax <= 1; ++ax) {
+			if ((ax == 0 && ay == 0) || (!nine && ax != 0 && ay != 0)) continue;
+			const int ex = dx + ax, ey = dy + ay;
+			const bool both_outside = (dx < -1 || dx > 1 || dy < -1 || dy > 1) && (ex < -1 || ex > 1 || ey < -1 || ey > 1);
+			if (both_outside) continue;
+			sum += cells.link(dx, dy, ax, ay) * (here - cells.weight(ex, ey, 0, 0));
+		}
+	return sum;
+}
+
+// The links of the coarse cells to the east, north, north-east and north-west: -(column of P of the neighbour)^T A (column of P).
+template <bool nine>
+inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lanes& east, Lanes& north, Lanes& north_east, Lanes& north_west)
+{
+	const Lanes zero = {};
+	east = north = north_east = north_west = zero;
+#pragma GCC unroll 4
+	for (int dy = -1; dy <= 2; ++dy)
+#pragma GCC unroll 5
+		for (int dx = -2; dx <= 2; ++dx) {
+			if (dy < 1 && dx < 1) continue;
+			const Lanes product = product_at<nine>(cells, dx, dy);
+			if (dx > 0 && dy < 2) east -= cells.weight(dx, dy, 1, 0) * product;
+			if (dx > -2 && dx < 2 && dy > 0) north -= cells.weight(dx, dy, 0, 1) * product;
+			if (dx > 0 && dy > 0) north_east -= cells.weight(dx, dy, 1, 1) * product;
+			if (dx < 0 && dy > 0) north_west -= cells.weight(dx, dy, -1, 1) * product;
+		}
+}
+
+template <bool nine>
+void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField (&row_of)[4])
+{
+	Field<double>* const links[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west };
+	for (int y = 0; y < coarse.grid.ny; ++y) {
+		const Span span = (*a.spans)[2 * y];
+		if (span.first == span.last) continue;
+		for (int k = span.first; k < span.last; k += lanes) {
+			Lanes link[4];
+			coarse_links<nine>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
+			for (int n = 0; n < 4; ++n) pack(row_of[n].row(0) + k) = link[n];
+		}
+		for (int n = 0; n < 4; ++n) split_span(row_of[n].row(0), coarse.spans[y], links[n]->row(y, 0), links[n]->row(y, 1));
+		split_span(a.inverse + a.grid->offset(2 * y, 0), coarse.spans[y], coarse.inverse_diagonal.row(y, 0), coarse.inverse_diagonal.row(y, 1));
+	}
+}
+
+// A coarse cell is linked to nothing if its diagonal is rounding beside the finer diagonal: then a part has shrunk to that cell.
+constexpr double least_coarse_diagonal = 1e-13;
+
+void invert_diagonal(NinePoint& a)
+{
+	const Lanes zero = {}, one = zero + 1;
+	const Links links = links_of(a);
+	for (int y = 0; y < a.grid.ny; ++y)
+		for (int parity = 0; parity < 2; ++parity) {
+			const Neighbours at(a.grid, y, parity);
+			for (int k = a.spans[y].first; k < a.spans[y].last; k += lanes) {
+				const std::size_t i = at.here + k;
+				const Lanes diagonal = (pack(links.east + i) + pack(links.east + at.west + k)) + (pack(links.north + i) + pack(links.north + at.south + k)) +
+									   ((pack(links.north_east + i) + pack(links.north_east + at.south_west + k)) +
+										   (pack(links.north_west + i) + pack(links.north_west + at.south_east + k)));
+				Lanes& inverse = pack(a.inverse_diagonal.data() + i);
+				inverse = diagonal * inverse > zero + least_coarse_diagonal ? one / diagonal : zero;
+			}
+		}
+}
+
+}  // namespace
+
+void Multigrid::Coarse::reshape(const SplitGrid& finer, const std::vector<Span>& finer_spans)
+{
+	a.grid.nx = (finer.nx + 1) / 2, a.grid.ny = (finer.ny + 1) / 2;
+	const int nx = a.grid.nx, ny = a.grid.ny;
+	a.spans.resize(ny);
+	for (int y = 0; y < ny; ++y) a.spans[y] = { rounded_down(finer_spans[2 * y].first / 2), rounded_up((finer_spans[2 * y].last + 1) / 2) };
+	for (Field<double>* field : { &a.east, &a.north, &a.north_east, &a.north_west, &a.inverse_diagonal, &f, &u, &rest })
+		*field = Field<double>(a.grid);
+	for (PlainField* field : { &p.west, &p.east, &p.south, &p.north, &p.south_west, &p.south_east, &p.north_west, &p.north_east, &plain })
+		*field = PlainField(nx, ny);
+	for (PlainField& row : rows) row = PlainField(nx, 1);
+}
+
+void Multigrid::update(const FivePoint& matrix, bool new_shape)
+{
+	finest = &matrix;
+	if (new_shape) {
+		coarse.clear();
+		rest = Field<double>(matrix.grid());
+		const SplitGrid* finer = &matrix.grid();
+		const std::vector<Span>* spans = &matrix.spans();
+		while (finer->nx > 1 || finer->ny > 1) {
+			coarse.push_back(std::make_unique<Coarse>());
+			coarse.back()->reshape(*finer, *spans);
+			finer = &coarse.back()->a.grid, spans = &coarse.back()->a.spans;
+		}
+	}
+	for (std::size_t level = 0; level < coarse.size(); ++level) {
+		Coarse& to = *coarse[level];
+		const Links a = level == 0 ? links_of(matrix) : links_of(coarse[level - 1]->a);
+		if (level == 0) {
+			interpolate<false>(a, to.p, to.a.grid.ny);
+			link_coarse<false>(a, to.p, to.a, to.rows);
+		} else {
+			interpolate<true>(a, to.p, to.a.grid.ny);
+			link_coarse<true>(a, to.p, to.a, to.rows);
+		}
+		invert_diagonal(to.a);
+	}
+}
+
+void Multigrid::apply(const Field<double>& r, Field<double>& z)
+{
+	const Links a = links_of(*finest);
+	sweep_first(a, r.data(), z.data(), rest.data());
+	if (!coarse.empty()) {
+		Coarse& next = *coarse.front();
+		restrict_to<false>(a, next.p, rest.data(), next.plain, next.a.grid.ny);
+		solve_coarse(0);
+		correct<false>(a, next.p, next.plain, z.data(), next.a.grid.ny);
+	}
+	sweep_last(a, r.data(), z.data());
+}
+
+// Replaces the residual in `plain` by the correction.
+void Multigrid::solve_coarse(std::size_t level)
+{
+	Coarse& here = *coarse[level];
+	const Links a = links_of(here.a);
+	const int ny = here.a.grid.ny;
+	for (int y = 0; y < ny; ++y) split_span(here.plain.row(y), here.a.spans[y], here.f.row(y, 0), here.f.row(y, 1));
+	sweep_first(a, here.f.data(), here.u.data(), here.rest.data());
+	if (level + 1 < coarse.size()) {
+		Coarse& next = *coarse[level + 1];
+		restrict_to<true>(a, next.p, here.rest.data(), next.plain, next.a.grid.ny);
+		solve_coarse(level + 1);
+		correct<true>(a, next.p, next.plain, here.u.data(), next.a.grid.ny);
+	}
+	sweep_last(a, here.f.data(), here.u.data());
+	for (int y = 0; y < ny; ++y) merge_span(here.u.row(y, 0), here.u.row(y, 1), here.a.spans[y], here.plain.row(y));
+}
+
+std::unique_ptr<Preconditioner> make_multigrid_preconditioner() { return std::make_unique<Multigrid>(); }
+
+}  // namespace graindrive::continuum
