@@ -14,6 +14,7 @@ void bind_drives();
 void bind_measures();
 void bind_fields();
 void bind_loop();
+void bind_continuum();
 }  // namespace graindrive
 
 static void register_everything()
@@ -31,6 +32,7 @@ static void register_everything()
 	graindrive::bind_measures();
 	graindrive::bind_fields();
 	graindrive::bind_loop();
+	graindrive::bind_continuum();
 }
 
 /// BOOST_PYTHON_MODULE would return the half-made module beside the exception, which Python reports as a SystemError without its text.

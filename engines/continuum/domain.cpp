@@ -16,7 +16,7 @@ const Grid& checked(const Grid& grid)
 {
 	if (grid.nx < 2 || grid.ny < 2)
 		throw std::invalid_argument("a grid must have at least 2 cells a side, got " + std::to_string(grid.nx) + " by " +
-			std::to_string(grid.ny) + "; make the spacing smaller");
+									std::to_string(grid.ny) + "; make the spacing smaller");
 	if (!(grid.spacing > 0) || !std::isfinite(grid.spacing))
 		throw std::invalid_argument("the spacing of a grid must be positive, got " + std::to_string(grid.spacing));
 	return grid;
@@ -38,8 +38,11 @@ double openness(double distance_into_solid, double half_width)
 
 Domain::Domain(const Grid& grid) : Domain(grid, [](double, double) { return 1.0; }, 0, {}) {}
 
-Domain::Domain(const Grid& grid, const Distance& distance, double half_width, const WallMotion& motion) :
-	open(zero_faces(checked(grid))), wall(zero_faces(grid)), cell_open(grid.zeros()), fluid(grid.zeros())
+Domain::Domain(const Grid& grid, const Distance& distance, double half_width, const WallMotion& motion)
+	: open(zero_faces(checked(grid))),
+	  wall(zero_faces(grid)),
+	  cell_open(grid.zeros()),
+	  fluid(grid.zeros())
 {
 	const auto chi = [&](double x, double y) {
 		const double d = distance(x, y);

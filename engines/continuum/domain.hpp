@@ -20,10 +20,10 @@ double openness(double distance_into_solid, double half_width);
 
 /// Openness and wall velocity on all faces, openness in all cells.
 struct Domain {
-	FaceValues open;       ///< chi [-]; 0 on closed edges of the grid
-	FaceValues wall;       ///< velocity of the solid
-	Values cell_open;      ///< chi at centres
-	Values fluid;          ///< 1 in cells of which some face is open, else 0: there nothing moves but the solid
+	FaceValues open;   ///< chi [-]; 0 on closed edges of the grid
+	FaceValues wall;   ///< velocity of the solid
+	Values cell_open;  ///< chi at centres
+	Values fluid;      ///< 1 in cells of which some face is open, else 0: there nothing moves but the solid
 
 	/// A grid full of fluid. @throws std::invalid_argument for fewer than two cells a side or a spacing that is not positive
 	explicit Domain(const Grid& grid);

@@ -25,8 +25,7 @@ int main(int count, char** words)
 	const double D = 150, spin = std::getenv("OMEGA") ? std::atof(std::getenv("OMEGA")) : 6.28e-3, spacing = D / cells;
 	const int n = cells + 32;
 	const Grid grid{ n, n, spacing, -0.5 * n * spacing, -0.5 * n * spacing, false };
-	const Domain domain(
-		grid, [&](double x, double y) { return D / 2 - std::hypot(x, y); }, 2 * spacing, { 0, 0, spin, 0, 0 });
+	const Domain domain(grid, [&](double x, double y) { return D / 2 - std::hypot(x, y); }, 2 * spacing, { 0, 0, spin, 0, 0 });
 	Fluids fluids;
 	const double grain = 4 / pi;
 	fluids.rheology = laws::GranularFluid<laws::MuOfI>{ laws::MuOfI(), std::sqrt(grain) };
@@ -35,9 +34,8 @@ int main(int count, char** words)
 	fluids.largest_viscosity = 8000;
 	fluids.gas_viscosity = 8e-3;
 	fluids.least_pressure = 1e-5;
-	TwoPhaseFlow flow(grid, domain, fluids, how, [&](double x, double y) {
-		return y < 0 || std::hypot(x, y) > D / 2 - 2 * spacing ? 1.0 : 0.0;
-	});
+	TwoPhaseFlow flow(grid, domain, fluids, how,
+		[&](double x, double y) { return y < 0 || std::hypot(x, y) > D / 2 - 2 * spacing ? 1.0 : 0.0; });
 	const double area = flow.area();
 	std::printf("stable step %g, area %.10g\n", flow.stable_step(), area);
 	const auto clock = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
@@ -63,9 +61,10 @@ int main(int count, char** words)
 			for (int j = 18; j < n - 18; ++j) h += state.fraction[grid.at(i, j)] * spacing;
 			return h;
 		};
-		std::printf("t %8.3f  it p %.1f s %.1f v %.1f  courant %.4f  area %+.2e  angle %.2f  %.3f ms/step, %.3g cell-steps/s\n", state.time,
-			double(p) / some, double(s) / some, double(v) / some, flow.report().courant, flow.area() / area - 1,
-			std::atan2(height(D / 8) - height(-D / 8), D / 4) * 180 / pi, (clock() - start) / some * 1e3, n * n * some / (clock() - start));
+		std::printf("t %8.3f  it p %.1f s %.1f v %.1f  courant %.4f  area %+.2e  angle %.2f  %.3f ms/step, %.3g cell-steps/s\n",
+			state.time, double(p) / some, double(s) / some, double(v) / some, flow.report().courant, flow.area() / area - 1,
+			std::atan2(height(D / 8) - height(-D / 8), D / 4) * 180 / pi, (clock() - start) / some * 1e3,
+			n * n * some / (clock() - start));
 		std::fflush(stdout);
 		p = s = v = 0;
 		before = k;
@@ -74,7 +73,7 @@ int main(int count, char** words)
 	const auto& state = flow.state();
 	for (int j = 16; j < n - 16; j += 3) {
 		const std::size_t c = grid.at(n / 2, j);
-		std::printf("y %7.2f alpha %.4f u %9.5f p %9.4f S %9.4f eta %.4g\n", grid.centre_y(j), state.fraction[c], state.velocity.x[c],
-			state.pressure[c], state.potential[c], flow.present_viscosity()[c]);
+		std::printf("y %7.2f alpha %.4f u %9.5f p %9.4f S %9.4f eta %.4g\n", grid.centre_y(j), state.fraction[c],
+			state.velocity.x[c], state.pressure[c], state.potential[c], flow.present_viscosity()[c]);
 	}
 }

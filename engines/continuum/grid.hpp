@@ -13,7 +13,7 @@ struct Grid {
 	static constexpr int ghosts = 2;
 
 	int nx = 0, ny = 0;
-	double spacing = 1;          ///< side of a cell
+	double spacing = 1;           ///< side of a cell
 	double low_x = 0, low_y = 0;  ///< lower left corner of cell (0, 0)
 	bool periodic_x = false;      ///< left and right edge are one; otherwise all edges are closed
 

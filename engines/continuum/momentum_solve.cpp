@@ -26,9 +26,15 @@ void for_rows(const Grid& grid, Work&& work)
 
 }  // namespace
 
-SplitViscosity::SplitViscosity(const Grid& g, const Domain& domain, Edge e) :
-	grid(g), edge(e), free(free_faces(g, domain)), direction(zero_faces(g)), image(zero_faces(g)), rest(zero_faces(g))
-{}
+SplitViscosity::SplitViscosity(const Grid& g, const Domain& domain, Edge e)
+	: grid(g),
+	  edge(e),
+	  free(free_faces(g, domain)),
+	  direction(zero_faces(g)),
+	  image(zero_faces(g)),
+	  rest(zero_faces(g))
+{
+}
 
 void SplitViscosity::apply(double a, FaceValues& of, FaceValues& result) const
 {
@@ -64,10 +70,19 @@ MomentumReport SplitViscosity::solve(double a, const FaceValues& given, FaceValu
 	return { report.iterations, report.residual };
 }
 
-FullViscosity::FullViscosity(const Grid& g, const Domain& domain, Edge e) :
-	grid(g), edge(e), free(free_faces(g, domain)), direction(zero_faces(g)), image(zero_faces(g)), rest(zero_faces(g)),
-	preconditioned(zero_faces(g)), over_diagonal(zero_faces(g)), rates(g), stresses(g)
-{}
+FullViscosity::FullViscosity(const Grid& g, const Domain& domain, Edge e)
+	: grid(g),
+	  edge(e),
+	  free(free_faces(g, domain)),
+	  direction(zero_faces(g)),
+	  image(zero_faces(g)),
+	  rest(zero_faces(g)),
+	  preconditioned(zero_faces(g)),
+	  over_diagonal(zero_faces(g)),
+	  rates(g),
+	  stresses(g)
+{
+}
 
 void FullViscosity::apply(const FaceValues& inertia, const Values& viscosity, FaceValues& of, FaceValues& result)
 {

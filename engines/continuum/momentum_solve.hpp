@@ -35,8 +35,8 @@ class FullViscosity {
 public:
 	FullViscosity(const Grid& grid, const Domain& domain, Edge edge);
 	/// `velocity` in: first guess, and what is fixed; out: solution. @throws std::runtime_error if the tolerance is not reached
-	MomentumReport solve(const FaceValues& inertia, const Values& viscosity, const FaceValues& given, FaceValues& velocity,
-		double tolerance);
+	MomentumReport solve(
+		const FaceValues& inertia, const Values& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance);
 
 private:
 	Grid grid;

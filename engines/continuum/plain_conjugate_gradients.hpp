@@ -62,7 +62,8 @@ GradientReport conjugate_gradients(const char* what, Apply&& apply, Precondition
 		if (left <= tolerance * scale) return report;
 		if (!std::isfinite(left) || report.iterations == most_iterations)
 			throw std::runtime_error(std::string(what) + " did not converge: " + std::to_string(report.residual) +
-				" of it is left after " + std::to_string(report.iterations) + " iterations; take a smaller time step");
+									 " of it is left after " + std::to_string(report.iterations) +
+									 " iterations; take a smaller time step");
 		if (report.iterations == 0)
 			direction = preconditioned;
 		else

@@ -79,9 +79,8 @@ int Pressure::solve_periodic(const Values& right_side, Values& p, double toleran
 	const auto apply = [&](Values& of, Values& result) {
 		fill_ghosts(grid, of);
 		grid.for_cells([&](int, int, std::size_t c) {
-			result[c] = scale *
-				(periodic.x[c] * (of[c] - of[c - 1]) + periodic.x[c + 1] * (of[c] - of[c + 1]) + periodic.y[c] * (of[c] - of[c - up]) +
-					periodic.y[c + up] * (of[c] - of[c + up]));
+			result[c] = scale * (periodic.x[c] * (of[c] - of[c - 1]) + periodic.x[c + 1] * (of[c] - of[c + 1]) +
+									periodic.y[c] * (of[c] - of[c - up]) + periodic.y[c + up] * (of[c] - of[c + up]));
 		});
 	};
 	const auto precondition = [&](const Values& r, Values& z) {
@@ -100,8 +99,9 @@ int Pressure::solve_periodic(const Values& right_side, Values& p, double toleran
 	apply(p, image);
 	add(-1, image, rest);
 	grid.for_cells([&](int, int, std::size_t c) { rest[c] = over_diagonal[c] > 0 ? rest[c] : 0; });
-	return conjugate_gradients("the pressure", apply, precondition, p, rest, direction, image, preconditioned, size, tolerance, 20000)
-		.iterations;
+	return conjugate_gradients(
+		"the pressure", apply, precondition, p, rest, direction, image, preconditioned, size, tolerance, 20000)
+	    .iterations;
 }
 
 }  // namespace graindrive::continuum

@@ -35,7 +35,8 @@ Values painted(const Grid& grid, const std::function<double(double, double)>& fr
 		result[c] = sum / (points * points);
 		if (!(result[c] >= 0 && result[c] <= 1))
 			throw std::invalid_argument("the fraction of the dense fluid must lie in [0, 1], got " + std::to_string(result[c]) +
-				" at (" + std::to_string(grid.centre_x(i)) + ", " + std::to_string(grid.centre_y(j)) + ")");
+										" at (" + std::to_string(grid.centre_x(i)) + ", " + std::to_string(grid.centre_y(j)) +
+										")");
 	});
 	return result;
 }
@@ -58,12 +59,28 @@ void add_in_cells(const Grid& grid, const Values& what, Values& to)
 }  // namespace
 
 TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
-	const std::function<double(double, double)>& fraction) :
-	g(grid), d(domain), material(fluids), how(settings), transport(grid, domain, settings.sharpness),
-	split(grid, domain, settings.edge), full(grid, domain, settings.edge), pressures(grid, settings.pressure_solver), rates(grid),
-	stresses(grid), rate(grid.zeros()), viscosity(grid.zeros()), density(grid.zeros()), scratch(grid.zeros()),
-	over_density(zero_faces(grid)), advected(zero_faces(grid)), viscous(zero_faces(grid)), given(zero_faces(grid)),
-	predicted(zero_faces(grid)), change(zero_faces(grid)), inertia(zero_faces(grid))
+	const std::function<double(double, double)>& fraction)
+	: g(grid),
+	  d(domain),
+	  material(fluids),
+	  how(settings),
+	  transport(grid, domain, settings.sharpness),
+	  split(grid, domain, settings.edge),
+	  full(grid, domain, settings.edge),
+	  pressures(grid, settings.pressure_solver),
+	  rates(grid),
+	  stresses(grid),
+	  rate(grid.zeros()),
+	  viscosity(grid.zeros()),
+	  density(grid.zeros()),
+	  scratch(grid.zeros()),
+	  over_density(zero_faces(grid)),
+	  advected(zero_faces(grid)),
+	  viscous(zero_faces(grid)),
+	  given(zero_faces(grid)),
+	  predicted(zero_faces(grid)),
+	  change(zero_faces(grid)),
+	  inertia(zero_faces(grid))
 {
 	check();
 	now.fraction = painted(g, fraction);
@@ -73,7 +90,8 @@ TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids&
 		component(now.velocity)[f] = component(d.open)[f] > 0 ? 0 : component(d.wall)[f];
 	});
 	fill_ghosts(g, now.velocity, how.edge);
-	for (Values* list : { &now.potential, &now.potential_change, &now.potential_change_before, &now.pressure, &now.pressure_before })
+	for (Values* list :
+		{ &now.potential, &now.potential_change, &now.potential_change_before, &now.pressure, &now.pressure_before })
 		*list = g.zeros();
 	find_material();
 	find_forces();
@@ -87,8 +105,14 @@ TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids&
 template <class Work>
 void TwoPhaseFlow::for_faces(Work&& work)
 {
-	g.for_x_faces([&](int, int, std::size_t f) { work(density, [](auto& faces) -> auto& { return faces.x; }, f, std::size_t(1)); });
-	g.for_y_faces([&](int, int, std::size_t f) { work(density, [](auto& faces) -> auto& { return faces.y; }, f, g.stride()); });
+	g.for_x_faces([&](int, int, std::size_t f) {
+		work(
+			density, [](auto& faces) -> auto& { return faces.x; }, f, std::size_t(1));
+	});
+	g.for_y_faces([&](int, int, std::size_t f) {
+		work(
+			density, [](auto& faces) -> auto& { return faces.y; }, f, g.stride());
+	});
 }
 
 void TwoPhaseFlow::check() const
@@ -125,8 +149,7 @@ double TwoPhaseFlow::nu_0() const
 double TwoPhaseFlow::stable_step() const
 {
 	if (how.viscosity == Viscosity::full) return std::numeric_limits<double>::infinity();
-	const double largest = std::max(
-		material.gas_viscosity / material.gas_density, material.largest_viscosity / material.density);
+	const double largest = std::max(material.gas_viscosity / material.gas_density, material.largest_viscosity / material.density);
 	const double explicit_part = largest - nu_0();
 	return explicit_part > 0 ? g.spacing * g.spacing / (4 * explicit_part) : std::numeric_limits<double>::infinity();
 }
@@ -201,9 +224,8 @@ void TwoPhaseFlow::find_forces()
 {
 	advection(g, now.velocity, advected);
 	viscous_force(g, rates, viscosity, stresses, viscous);
-	for_faces([&](const Values&, auto component, std::size_t f, std::size_t) {
-		component(viscous)[f] *= component(over_density)[f];
-	});
+	for_faces(
+		[&](const Values&, auto component, std::size_t f, std::size_t) { component(viscous)[f] *= component(over_density)[f]; });
 }
 
 /// div(chi/rho grad p) = div{chi (v/dt + A + B + g) + (1 - chi) v_wall/dt}. Oba, Otsuki (2025), (46), leaves out chi v/dt; its own (47), of
@@ -258,16 +280,15 @@ void TwoPhaseFlow::predict_split()
 	const Values& S = now.potential;
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t next) {
 		const double gravity = next == 1 ? how.gravity_x : how.gravity_y;
-		component(given)[f] = dt *
-			(1.5 * component(advected)[f] - 0.5 * component(now.advection_before)[f] -
-				over_spacing * (S[f] - S[f - next]) * component(over_density)[f] + component(viscous)[f] + gravity);
+		component(given)[f] =
+			dt * (1.5 * component(advected)[f] - 0.5 * component(now.advection_before)[f] -
+					 over_spacing * (S[f] - S[f - next]) * component(over_density)[f] + component(viscous)[f] + gravity);
 	});
 	change = given;
 	last.viscous_iterations = split.solve(0.5 * nu_0() * dt, given, change, how.viscous_tolerance).iterations;
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t) {
 		const double chi = component(d.open)[f];
-		component(predicted)[f] =
-			chi * (component(now.velocity)[f] + component(change)[f]) + (1 - chi) * component(d.wall)[f];
+		component(predicted)[f] = chi * (component(now.velocity)[f] + component(change)[f]) + (1 - chi) * component(d.wall)[f];
 	});
 }
 
@@ -285,13 +306,11 @@ void TwoPhaseFlow::predict_full()
 		}
 		const double weight = 0.5 * (rho[f] + rho[f - next]) / (chi * dt);
 		component(inertia)[f] = weight;
-		component(given)[f] = weight *
-			(chi *
-					(component(now.velocity)[f] +
-						dt *
-							(1.5 * component(advected)[f] - 0.5 * component(now.advection_before)[f] -
-								over_spacing * (S[f] - S[f - next]) * component(over_density)[f] + gravity)) +
-				(1 - chi) * component(d.wall)[f]);
+		component(given)[f] =
+			weight * (chi * (component(now.velocity)[f] +
+								dt * (1.5 * component(advected)[f] - 0.5 * component(now.advection_before)[f] -
+										 over_spacing * (S[f] - S[f - next]) * component(over_density)[f] + gravity)) +
+						 (1 - chi) * component(d.wall)[f]);
 		component(predicted)[f] = component(now.velocity)[f];
 	});
 	last.viscous_iterations = full.solve(inertia, viscosity, given, predicted, how.viscous_tolerance).iterations;
@@ -316,8 +335,8 @@ void TwoPhaseFlow::project()
 	extrapolate(sigma, now.potential_change_before);
 	last.potential_iterations = pressures.solve(scratch, sigma, how.tolerance, right_side_size);
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t next) {
-		component(now.velocity)[f] = component(predicted)[f] -
-			dt * component(d.open)[f] * component(over_density)[f] * over_spacing * (sigma[f] - sigma[f - next]);
+		component(now.velocity)[f] = component(predicted)[f] - dt * component(d.open)[f] * component(over_density)[f] *
+		                                                           over_spacing * (sigma[f] - sigma[f - next]);
 	});
 	fill_ghosts(g, now.velocity, how.edge);
 	now.advection_before = advected;
@@ -337,8 +356,8 @@ void TwoPhaseFlow::require_followed()
 	last.courant = fastest * how.time_step / g.spacing;
 	if (last.courant < 0.5) return;
 	std::ostringstream message;
-	message << "the flow must cross less than half a cell in a step, but at time " << now.time << " it would cross " << last.courant
-			<< " of one; take a time step below " << how.time_step;
+	message << "the flow must cross less than half a cell in a step, but at time " << now.time << " it would cross "
+			<< last.courant << " of one; take a time step below " << how.time_step;
 	throw std::runtime_error(message.str());
 }
 
@@ -375,7 +394,7 @@ void TwoPhaseFlow::restore(const FlowState& state)
 	taken.arrays([&](const char* name, const Values& list) {
 		if (list.size() != g.size())
 			throw std::invalid_argument(std::string(name) + " must have " + std::to_string(g.size()) + " numbers, got " +
-				std::to_string(list.size()) + "; take a state of a flow on the same grid");
+										std::to_string(list.size()) + "; take a state of a flow on the same grid");
 		if (!std::all_of(list.begin(), list.end(), [](double value) { return std::isfinite(value); }))
 			throw std::invalid_argument(std::string(name) + " must hold finite numbers");
 	});

@@ -40,12 +40,12 @@ struct FlowSettings {
 struct FlowState {
 	double time = 0;
 	long steps = 0;
-	Values fraction;    ///< alpha [-]
+	Values fraction;  ///< alpha [-]
 	FaceValues velocity;
-	FaceValues advection_before;  ///< A of the last step
-	Values potential;   ///< S, by which the last step projected
+	FaceValues advection_before;                       ///< A of the last step
+	Values potential;                                  ///< S, by which the last step projected
 	Values potential_change, potential_change_before;  ///< sigma of the last steps: first guesses
-	Values pressure, pressure_before;        ///< p, which the rheology sees
+	Values pressure, pressure_before;                  ///< p, which the rheology sees
 
 	template <class Visit>
 	void arrays(Visit&& visit)

@@ -40,7 +40,8 @@ struct Drum {
 	double diameter = 48, spacing = 2, spin = 0, gravity = -1;
 	Grid grid{ 40, 40, 2, -40, -40, false };
 
-	TwoPhaseFlow flow(const Fluids& fluids, const FlowSettings& given, const std::function<double(double, double)>& fraction) const
+	TwoPhaseFlow flow(
+		const Fluids& fluids, const FlowSettings& given, const std::function<double(double, double)>& fraction) const
 	{
 		FlowSettings how = given;
 		how.gravity_y = gravity;
@@ -94,9 +95,7 @@ TEST(TwoPhaseFlow, a_full_drum_turns_as_a_rigid_body_with_the_pressure_of_gravit
 	const Grid& grid = flow.grid();
 	const Values &p = flow.state().pressure, &u = flow.state().velocity.x;
 	const double rho = fluids.density, middle = p[grid.at(20, 20)], y_0 = grid.centre_y(20), x_0 = grid.centre_x(20);
-	const auto exact = [&](double x, double y) {
-		return 0.5 * rho * drum.spin * drum.spin * (x * x + y * y) - rho * y;
-	};
+	const auto exact = [&](double x, double y) { return 0.5 * rho * drum.spin * drum.spin * (x * x + y * y) - rho * y; };
 	for (const int j : { 12, 16, 20, 24, 27 }) {
 		EXPECT_NEAR(u[grid.at(20, j)], -drum.spin * grid.centre_y(j), 1e-4 * drum.spin * 24);
 		const double y = grid.centre_y(j);
@@ -192,7 +191,8 @@ TEST(TwoPhaseFlow, poiseuille_flow_in_a_channel)
 	const double eta = 0.5;
 	const TwoPhaseFlow flow = steady_channel(one_fluid(laws::NewtonianFluid{ eta }, eta), 32, 3, 0.02);
 	const double peak = 1 / (8 * eta);
-	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) { EXPECT_NEAR(u, y * (1 - y) / (2 * eta), 1e-3 * peak); });  // 1/n^2
+	for_column(
+		flow, 2, 0, 1, [&](double y, double u, std::size_t) { EXPECT_NEAR(u, y * (1 - y) / (2 * eta), 1e-3 * peak); });  // 1/n^2
 }
 
 TEST(TwoPhaseFlow, an_immersed_wall_holds_the_fluid_within_its_transition)
@@ -221,7 +221,8 @@ TEST(TwoPhaseFlow, bingham_flow_in_a_channel_has_a_plug)
 	const double peak = (0.5 - yield) * (0.5 - yield) / (2 * eta);
 	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) {
 		const double from_wall = std::min(y, 1 - y), sheared = 0.5 - yield;
-		const double exact = from_wall < sheared ? (sheared * sheared - (sheared - from_wall) * (sheared - from_wall)) / (2 * eta) : peak;
+		const double exact =
+			from_wall < sheared ? (sheared * sheared - (sheared - from_wall) * (sheared - from_wall)) / (2 * eta) : peak;
 		EXPECT_NEAR(u, exact, 0.03 * peak) << "at " << y;
 	});
 }

@@ -29,9 +29,15 @@ double thinc(double a, double sign, double courant, double beta)
 
 }  // namespace
 
-VolumeOfFluid::VolumeOfFluid(const Grid& g, const Domain& domain, double sharpness) :
-	grid(g), moves_x(g.zeros()), moves_y(g.zeros()), whole(g.zeros()), beta(sharpness), flux(g.zeros()), above_half(g.zeros()),
-	first_dilation(g.zeros())
+VolumeOfFluid::VolumeOfFluid(const Grid& g, const Domain& domain, double sharpness)
+	: grid(g),
+	  moves_x(g.zeros()),
+	  moves_y(g.zeros()),
+	  whole(g.zeros()),
+	  beta(sharpness),
+	  flux(g.zeros()),
+	  above_half(g.zeros()),
+	  first_dilation(g.zeros())
 {
 	if (!(beta > 0) || !std::isfinite(beta))
 		throw std::invalid_argument("the sharpness of a surface must be positive, got " + std::to_string(beta));
@@ -69,10 +75,8 @@ double VolumeOfFluid::flux_of(
 	const double* a = fraction.data() + donor;
 	if (a[0] < pure || a[0] > 1 - pure) return a[0] * std::abs(courant);
 	const auto at = [&](int along, int side) { return a[std::ptrdiff_t(step) * along + std::ptrdiff_t(across) * side]; };
-	const double along =
-		(at(1, -1) - at(-1, -1)) + 2 * (at(1, 0) - at(-1, 0)) + (at(1, 1) - at(-1, 1));
-	const double sideways =
-		(at(-1, 1) - at(-1, -1)) + 2 * (at(0, 1) - at(0, -1)) + (at(1, 1) - at(1, -1));
+	const double along = (at(1, -1) - at(-1, -1)) + 2 * (at(1, 0) - at(-1, 0)) + (at(1, 1) - at(-1, 1));
+	const double sideways = (at(-1, 1) - at(-1, -1)) + 2 * (at(0, 1) - at(0, -1)) + (at(1, 1) - at(1, -1));
 	const double total = std::abs(along) + std::abs(sideways);
 	if (total == 0 || at(1, 0) == at(-1, 0)) return a[0] * std::abs(courant);
 	const double weight = std::abs(along) / total, sign = at(1, 0) > at(-1, 0) ? 1 : -1;
@@ -88,9 +92,9 @@ void VolumeOfFluid::sweep(Values& fraction, const Sweep& s, double scale, bool s
 	for (int j = 0; j < last_j; ++j)
 		for (std::size_t f = grid.at(0, j); f < grid.at(last_i, j); ++f) {
 			const double courant = scale * velocity[f] * moves[f];
-			flux[f] = courant > 0 ? flux_of(fraction, f - s.along, s.along, across, courant)
-				: courant < 0     ? -flux_of(fraction, f, s.along, across, courant)
-								  : 0;
+			flux[f] = courant > 0   ? flux_of(fraction, f - s.along, s.along, across, courant)
+			          : courant < 0 ? -flux_of(fraction, f, s.along, across, courant)
+			                        : 0;
 		}
 	grid.for_cells([&](int, int, std::size_t c) {
 		const double own = scale * (velocity[c + s.along] * moves[c + s.along] - velocity[c] * moves[c]);

@@ -82,9 +82,8 @@ Carried vortex(int n)
 	const Grid grid = unit_square(n);
 	const Values start =
 		painted(grid, [](double x, double y) { return (x - 0.5) * (x - 0.5) + (y - 0.75) * (y - 0.75) < 0.15 * 0.15; });
-	const FaceValues once = from_stream(grid, [](double x, double y) {
-		return std::sin(pi * x) * std::sin(pi * x) * std::sin(pi * y) * std::sin(pi * y) / pi;
-	});
+	const FaceValues once = from_stream(
+		grid, [](double x, double y) { return std::sin(pi * x) * std::sin(pi * x) * std::sin(pi * y) * std::sin(pi * y) / pi; });
 	Values fraction = start;
 	VolumeOfFluid transport(grid, Domain(grid));
 	const double period = 2;

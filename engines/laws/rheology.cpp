@@ -48,7 +48,10 @@ WellPosed well_posed_range(const MuOfI& law)
 	return { bisected(criterion, least, best), bisected(criterion, best, most) };
 }
 
-RegularisedMuOfI::RegularisedMuOfI(const FrictionConstants& given, Real mu_inf_, Real a_) : c(checked(given)), mu_inf(mu_inf_), a(a_)
+RegularisedMuOfI::RegularisedMuOfI(const FrictionConstants& given, Real mu_inf_, Real a_)
+	: c(checked(given)),
+	  mu_inf(mu_inf_),
+	  a(a_)
 {
 	require({ "fastFriction", "mu_inf", "-", "growth of friction in very fast flow", not_negative }, mu_inf);
 	require({ "slowRise", "a", "-", "constant of friction in very slow flow", positive }, a);

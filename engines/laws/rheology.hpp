@@ -85,10 +85,7 @@ struct GranularFluid {
 	{
 		return friction_law.friction(inertial_number(rate, pressure)) * pressure / rate;
 	}
-	bool ill_posed(Real rate, Real pressure) const
-	{
-		return ill_posedness(friction_law, inertial_number(rate, pressure)) > 0;
-	}
+	bool ill_posed(Real rate, Real pressure) const { return ill_posedness(friction_law, inertial_number(rate, pressure)) > 0; }
 };
 
 /// tau = eta rate: for checks against closed forms, and for liquids.
