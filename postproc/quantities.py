@@ -141,6 +141,27 @@ QUANTITIES = {
         **of("Pa", pressure="lift study: P_0 = rho g times the effective depth"),
         **of("kg/m^3", bulk_density="lift study: rho, of the bed at rest"),
         **of(
+            "-",
+            thickness_over_diameter="drum: h/D, depth below the axis at which u = 0, the paper's h",
+            layer_over_diameter="drum: depth below the free surface at which u = 0, over D",
+            surface_over_diameter="drum: z of the free surface on the line through the axis normal to it, < 0 above the axis, over D",
+            froude="drum: Omega^2 D/2g",
+            packing_fraction="drum: solid fraction in the static part; of a continuum the volume fraction of its granular phase",
+            surface_speed="drum: largest u over Omega D",
+            flow_down="drum: Q+, integral of fraction times u where u > 0, over Omega D^2",
+            flow_up="drum: Q-, the same where u < 0",
+            flow_balance="drum: (Q+ + Q-)/Q+, 0 in a steady state",
+            rigid_deviation="drum: root mean square of u + Omega z in the static part over that of Omega z",
+            dem_continuum_difference="drum: L2 norm of the difference of u(z) of grains and continuum over that of the grains",
+        ),
+        **of(
+            "degrees",
+            surface_angle_deg="drum: angle of the free surface at the axis",
+            centre_angle="drum: mean angle by which the grains' centre of mass is turned from below the axis",
+            averaged_from="drum: turn at which the averages begin",
+            averaged_turn="drum: turn that the averages cover",
+        ),
+        **of(
             "force",
             buoyancy="lift study: rho g times the body's volume",
             weight="lift study: of grains and lid as gravity acts on them",
@@ -154,8 +175,13 @@ QUANTITIES = {
         **of("velocity", vx="of the body, half a time step before t", vy="of the body, half a time step before t"),
         **of("force", fx="of the grains on the body", fy="of the grains on the body"),
         **of("-", contacts="on the body", slipping="Magnus: contacts on the body that slip"),
-        **of("work", work="wiggle: done by the drive since the start"),
+        **of("work", work="wiggle, drum: done by the drive since the start"),
         **of("d", travel="Magnus: way of the body since the start"),
+        **of(
+            "degrees",
+            turn="drum: how far it has turned since the start",
+            centre_angle="drum: by how much the grains' centre of mass is turned from below the axis",
+        ),
         **of("-", phi="Magnus: area fraction between the walls, without the body"),
         **of("force", normal_x="Magnus: normal forces on the body, along x"),
         **of(
@@ -165,7 +191,7 @@ QUANTITIES = {
             base_fz="lift study: of the grains on the base",
         ),
         **of("length", lid_z="lift study: mean height of the lid's centres; 0 without a lid"),
-        **of("torque", torque="Magnus: on the body, counter-clockwise"),
+        **of("torque", torque="Magnus, drum: on the body, counter-clockwise; of a drum the mean since the row before"),
         **of(
             "force squared", fx_var="Magnus: variance of fx within the block", fy_var="Magnus: of fy within the block"
         ),
@@ -291,6 +317,11 @@ QUANTITIES = {
         **of("length", z="middles of the slabs, heights above the base's centres"),
         **of("-", fraction="volume fraction of the grains in a slab at rest", fraction_after="at the end of the run"),
     },
+    "depth/MODEL": {
+        **of("length", z="drum: depths below the axis on the line normal to the surface, middles of squares of 1.2 d"),
+        **of("velocity", u="velocity down the slope in a square; nan where nothing is"),
+        **of("-", fraction="solid fraction in a square; of a continuum the volume fraction of its granular phase"),
+    },
     "phase": {**of("T", phase="middle of the part of the cycle, t/T"), **of("velocity", vy="V_y in this part")},
     "table.csv": {
         **of("", run="name of the run's folder below runs/", sweeps="sweeps that want the run"),
@@ -304,7 +335,7 @@ def place_of(group):
     """Return the key of QUANTITIES that a group of run.h5 stands under: frames/0001/contacts is frames/NNNN/contacts."""
     parts = group.split("/")
     if len(parts) > 1:
-        parts[1] = {"frames": "NNNN", "fields": "NAME"}.get(parts[0], parts[1])
+        parts[1] = {"frames": "NNNN", "fields": "NAME", "depth": "MODEL"}.get(parts[0], parts[1])
     return "/".join(parts)
 
 

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 from . import engines
 
-LAW = "hertzHistory"
-
 
 @dataclass(frozen=True)
 class HertzHistoryMaterial:
@@ -23,6 +21,8 @@ class HertzHistoryMaterial:
     friction: float
     density: float
 
+    LAW = "hertzHistory"
+
     def critical_time_step(self, smallest_radius, overlap):
         """Return the largest stable step [s] of two smallest disks overlapping by `overlap` of their radius.
 
@@ -30,12 +30,7 @@ class HertzHistoryMaterial:
         their rolling is free. Hertz stiffness grows with the overlap: given the one where GrainLoop's guard stops a run,
         the step holds for every contact that it lets pass.
         """
-        mass = self.density * math.pi * smallest_radius**2
-        at = self.terms(smallest_radius, overlap)
-        normal = engines.critical_step(at["stiffness"], at["dashpot"], mass / 2)
-        if self.friction == 0:
-            return normal
-        return min(normal, engines.critical_step(at["tangential_stiffness"], at["tangential_dashpot"], mass / 6))
+        return critical_time_step_of_disks(self, smallest_radius, overlap)
 
     def force_between(self, radius, overlap):
         """Return the force [N] of resting disks of `radius` [m] that overlap by `overlap` of it."""
@@ -44,7 +39,7 @@ class HertzHistoryMaterial:
     def terms(self, radius, overlap):
         """Return the law's terms for two disks of `radius` [m] that overlap by `overlap` of it, see `engines.terms_of_law`."""
         mass = self.density * math.pi * radius**2
-        return engines.terms_of_law(LAW, self.given(), overlap * radius, radius / 2, mass / 2)
+        return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius / 2, mass / 2)
 
     def given(self):
         """Return what the law is given, under the names of GrainLoop and of the Law2_ functor."""
@@ -54,6 +49,54 @@ class HertzHistoryMaterial:
             normalDamping=self.normal_damping,
             tangentialDamping=self.tangential_damping,
         )
+
+
+@dataclass(frozen=True)
+class SpringDashpotMaterial:
+    """Disks under the linear spring-dashpot law of Oba, Otsuki (2025), in any consistent units.
+
+    normal_stiffness k_n, tangential_stiffness k_t [N/m]; restitution e, which sets both dashpots, and friction mu [-];
+    density [kg/m^2] of a disk.
+    """
+
+    normal_stiffness: float
+    tangential_stiffness: float
+    restitution: float
+    friction: float
+    density: float
+
+    LAW = "springDashpot"
+
+    def critical_time_step(self, smallest_radius, overlap):
+        """Return the largest stable step [s] of two smallest disks; the law is linear, so `overlap` [R] plays no part."""
+        return critical_time_step_of_disks(self, smallest_radius, overlap)
+
+    def force_between(self, radius, overlap):
+        """Return the force [N] of resting disks of `radius` [m] that overlap by `overlap` of it."""
+        return self.terms(radius, overlap)["elastic"]
+
+    def terms(self, radius, overlap):
+        """Return the law's terms for two disks of `radius` [m] that overlap by `overlap` of it, see `engines.terms_of_law`."""
+        mass = self.density * math.pi * radius**2
+        return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius / 2, mass / 2)
+
+    def given(self):
+        """Return what the law is given, under the names of GrainLoop and of the Law2_ functor."""
+        return dict(
+            normalStiffness=self.normal_stiffness,
+            tangentialStiffness=self.tangential_stiffness,
+            restitution=self.restitution,
+        )
+
+
+def critical_time_step_of_disks(material, smallest_radius, overlap):
+    """Return the largest stable step [s] of two smallest disks of a material, along the normal and sliding past each other."""
+    mass = material.density * math.pi * smallest_radius**2
+    at = material.terms(smallest_radius, overlap)
+    normal = engines.critical_step(at["stiffness"], at["dashpot"], mass / 2)
+    if material.friction == 0:
+        return normal
+    return min(normal, engines.critical_step(at["tangential_stiffness"], at["tangential_dashpot"], mass / 6))
 
 
 @dataclass(frozen=True)

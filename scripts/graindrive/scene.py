@@ -129,7 +129,8 @@ def yade_loop(material, gravity, between=(), damping=0.0):
     from yade import O
     from yade import wrapper as w
 
-    law = engines.Law2_ScGeom_ContactPhys_HertzHistory(**material.given())
+    functors = {law: name for name, law in engines.law_functors().items()}
+    law = getattr(engines, functors[material.LAW])(**material.given())
     phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=material.friction)
     O.engines = [
         w.ForceResetter(),

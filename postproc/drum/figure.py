@@ -1,0 +1,161 @@
+"""The figure of one drum run: grains with their free surface, velocity map, u(z) with rigid rotation, angle over turn or fraction."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patches import Circle
+
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, draw_grains, save
+from ..reader import BEAD, Run
+from .blocks import models_in, read
+from .flow import analysed
+
+ARROWS = 4.8  # d, edge of the squares of the paper's Fig. 2
+NAMES = {"dem": "grains", "continuum": "continuum"}
+LOOKS = {"dem": dict(color=BLUE, marker="o"), "continuum": dict(color=VERMILLION, marker="s")}
+
+
+def draw(path, frame=-1):
+    """Draw figure.png and figure.pdf of the run folder `path` from its data alone."""
+    run = Run(path)
+    p = run.parameters
+    fields = {model: read(run, model).mean().within(p["drum_diameter"]) for model in models_in(run)}
+    found = {model: analysed(field, p["drum_diameter"], p["angular_velocity"]) for model, field in fields.items()}
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, 2, figsize=(2 * COLUMN_WIDTH, 5.6), layout="constrained")
+        figure.suptitle(title(run), fontsize=8)
+        draw_bed(figure, axes[0, 0], run, frame, fields, found)
+        draw_maps(axes[0, 1], run, fields, found)
+        draw_profiles(axes[1, 0], run, found)
+        draw_history(axes[1, 1], run, found)
+        for letter, panel in zip("abcd", axes.flat):
+            panel.set_title(f"({letter})", loc="left")
+        save(figure, path)
+
+
+def title(run):
+    """Return in words which drum turned how fast, and what came out."""
+    p, found = run.parameters, run.summary
+    words = rf"$D$ = {p['drum_diameter']:g} $d$, $\Omega$ = {p['angular_velocity']:.3g} $\sqrt{{g/d}}$, Fr = {p['froude']:.3g}"
+    for name, symbol, scale in (
+        ("surface_angle_deg", r"$\theta$ = {:.1f}°", 1),
+        ("thickness_over_diameter", r"$h/D$ = {:.3f}", 1),
+        ("dem_continuum_difference", r"difference {:.1f} %", 100),
+    ):
+        if found.get(name) is not None:
+            words += ", " + symbol.format(scale * found[name])
+    return words
+
+
+def draw_bed(figure, axes, run, frame, fields, found):
+    """Grains of a frame by their speed, or the speed of the field where there are no frames, with the free surface."""
+    p = run.parameters
+    scale, radius = p["angular_velocity"] * p["drum_diameter"], p["drum_diameter"] / 2
+    limits = dict(cmap="viridis", clim=(0, speed_limit(found, scale)))
+    if run.frame_names:
+        seen = run.frame(frame)
+        mesh = draw_grains(axes, *(seen.grains[name] for name in "xyr"), values=seen.speed / scale, **limits)
+        disks = seen.disks()
+        wall = disks["role"] == BEAD
+        draw_grains(axes, *(disks[name][wall] for name in "xyr"), colour=BLACK)
+    else:
+        field = next(iter(fields.values()))
+        speed = np.hypot(field.velocity_x, field.velocity_y) / scale
+        shown = np.ma.masked_where(~(field.fraction > field.surface_level / 2), speed)
+        mesh = axes.pcolormesh(field.x, field.y, shown, shading="nearest", rasterized=True, **limits)
+        axes.add_patch(Circle((0, 0), radius, facecolor="none", edgecolor=BLACK, linewidth=0.8))
+    bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.05, aspect=25)
+    bar.set_label(r"$|\mathbf{v}|/\Omega D$")
+    for model, one in found.items():
+        draw_surface(axes, one.surface, fields[model], radius, LOOKS[model]["color"])
+    frame_drum(axes, radius)
+
+
+def speed_limit(found, scale):
+    """Return the end of the scale of speeds: the fastest profile's largest u, over Omega D; at least the wall's 1/2."""
+    fastest = [np.nanmax(one.profile.u) / scale for one in found.values() if np.isfinite(one.profile.u).any()]
+    return max([0.5, *fastest])
+
+
+def draw_surface(axes, surface, field, radius, colour):
+    """Where the fraction falls to the surface's level, and the line that gives its angle."""
+    beside_the_wall = np.hypot(field.x[None, :], field.y[:, None]) > 0.97 * radius - 1
+    fraction = np.ma.masked_where(beside_the_wall, field.fraction)
+    axes.contour(field.x, field.y, fraction, [field.surface_level], colors=[colour], linewidths=0.8)
+    if len(surface.x):
+        x = np.array([surface.x.min(), surface.x.max()])
+        axes.plot(x, surface.height + np.tan(surface.angle) * x, color=BLACK, linewidth=1.2)
+
+
+def frame_drum(axes, radius):
+    """Show the whole drum, true to scale."""
+    axes.set(aspect="equal", xlim=(-1.04 * radius, 1.04 * radius), ylim=(-1.04 * radius, 0.75 * radius))
+    axes.set(xlabel="$X$  [$d$]", ylabel="$Y$  [$d$]")
+
+
+def draw_maps(axes, run, fields, found):
+    """Mean velocities in squares of 4.8 d, or of a thirtieth of a larger drum, as arrows (Fig. 2)."""
+    p = run.parameters
+    radius = p["drum_diameter"] / 2
+    edge = max(ARROWS * min(1, radius / 40), radius / 16)
+    axes.add_patch(Circle((0, 0), radius, facecolor="none", edgecolor=BLACK, linewidth=0.8))
+    for model, field in fields.items():
+        x, y, v_x, v_y = in_squares(field, edge)
+        colour = LOOKS[model]["color"]
+        scale = 0.25 * p["angular_velocity"] * p["drum_diameter"] / edge
+        style = dict(angles="xy", scale_units="xy", scale=scale, color=colour, width=0.0035, pivot="tail")
+        axes.quiver(x, y, v_x, v_y, **style)
+        draw_surface(axes, found[model].surface, field, radius, colour)
+    frame_drum(axes, radius)
+
+
+def in_squares(field, edge):
+    """Return x, y, v_x, v_y of the mean velocity in squares of about that edge in which grains are at half of the surface's level."""
+    spacing = field.x[1] - field.x[0]
+    n = max(1, round(edge / spacing))
+    rows, columns = len(field.y) // n, len(field.x) // n
+
+    def mean(values):
+        return values[: rows * n, : columns * n].reshape(rows, n, columns, n).mean(axis=(1, 3))
+
+    fraction, (flux_x, flux_y) = mean(field.fraction), (mean(flux) for flux in field.fluxes)
+    x, y = (axis[: k * n].reshape(k, n).mean(axis=1) for axis, k in ((field.x, columns), (field.y, rows)))
+    kept = fraction > field.surface_level / 2
+    x, y = np.meshgrid(x, y)
+    return x[kept], y[kept], flux_x[kept] / fraction[kept], flux_y[kept] / fraction[kept]
+
+
+def draw_profiles(axes, run, found):
+    """u/(Omega D) against z/D of each model, with rigid rotation and h (Fig. 3)."""
+    p = run.parameters
+    diameter, scale = p["drum_diameter"], p["angular_velocity"] * p["drum_diameter"]
+    for model, one in found.items():
+        stored = run.group(f"depth/{model}")
+        error = stored["u_err"] if "u_err" in stored else np.full(len(one.profile.z), np.nan)
+        style = dict(LOOKS[model], markersize=2.2, linewidth=0, elinewidth=0.5, label=NAMES[model])
+        kept = np.isfinite(one.profile.u) & (one.profile.z < diameter / 2)
+        errors = np.nan_to_num(error[kept]) / scale
+        axes.errorbar(one.profile.z[kept] / diameter, one.profile.u[kept] / scale, errors, **style)
+        axes.axvline(one.numbers["thickness_over_diameter"], color=LOOKS[model]["color"], linewidth=0.6, linestyle=":")
+    axes.plot([0, 0.5], [0, -0.5], color=BLACK, linewidth=0.8, label=r"rigid rotation, $-\Omega z$")
+    axes.axhline(0, color=GREY, linewidth=0.6)
+    axes.set(xlabel="$z/D$, depth below the axis", ylabel=r"$u/\Omega D$", xlim=(-0.1, 0.5))
+    axes.legend()
+
+
+def draw_history(axes, run, found):
+    """The angle of the grains' centre of mass over the drum's turn; of a continuum alone, its fraction across the layer."""
+    if "turn" in run.series:
+        turn, start = run.series["turn"], run.summary.get("averaged_from")
+        axes.plot(turn, run.series["centre_angle"], color=GREEN, label="centre of mass")
+        if start is not None and len(turn):
+            axes.axvspan(start, turn[-1], color=GREY, alpha=0.3, linewidth=0)
+        for model, one in found.items():
+            angle = one.numbers["surface_angle_deg"]
+            axes.axhline(angle, color=LOOKS[model]["color"], linewidth=0.8, label=f"surface, {NAMES[model]}")
+        axes.set(xlabel="turn of the drum  [degrees]", ylabel="angle  [degrees]", ylim=(0, None))
+    else:
+        for model, one in found.items():
+            z = one.profile.z / run.parameters["drum_diameter"]
+            axes.plot(z, one.profile.fraction, color=LOOKS[model]["color"], label=NAMES[model])
+        axes.set(xlabel="$z/D$, depth below the axis", ylabel="fraction", xlim=(-0.1, 0.5))
+    axes.legend()

@@ -1,0 +1,461 @@
+"""Drum: a half full drum turns slowly; a layer flows down the surface, and below it the bed turns with the drum.
+
+System of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025): disks of d to 1.2 d in a
+drum of D = 150, 300, 450 d with a rough wall, under gravity, at Fr = Omega^2 D/2g from 1e-4 to 1e-2. Linear spring and dashpot,
+k_n = 2e5 m g/d with m the mass of a disk of d, k_t = 2/7 k_n, the same dashpot along and across, mu = 0.5, e = 0.92.
+model=continuum solves the same drum as a fluid of rheology mu(I), model=both does one after the other and compares. Units:
+grain diameter d, density rho, gravity g; so m = pi/4 rho d^2.
+
+Readings, each a parameter or named here: a grain has the mass of its own diameter, as section II.2.2 says; the wall's disks, of
+diameter d, lie on the circle of diameter D itself, 475 at D = 150 (where pi D = 471, so neighbours overlap by 0.008 d, and feel
+nothing of it), 632 and 946 at D = 300 and 450 (a gap of 0.49 d, which lets no grain through), at other diameters as many as
+touch. The wall counts as infinitely heavy in its contacts. N is the paper's, 7700, 30600 and 69200, which fill half of the
+circle at a solid fraction of 0.825 to 0.83; at other diameters and fillings as many as do at 0.828. The surface is where the
+solid fraction is 0.7; its angle is that of a straight line through it within D/8 of the axis. u is taken in squares of 1.2 d on
+the line through the axis normal to the surface. h is where u = 0, from the axis, as the paper takes the surface to pass through
+it; layer_over_diameter is from the surface that was found.
+
+The grains are poured with a restitution of 0.5, and lie level to within 3 degrees. Averages begin when the drum has turned by
+start_turn and the angle of the grains' centre of mass has not drifted by 0.5 degrees over the last third of it; they go over
+`turn`. Half a turn takes each grain once through the layer. Errors are those of eight blocks in time.
+
+    scripts/run drum                                              the demo
+    yade -n -x studies/drum.py drum_diameter=300 froude=3e-3 scale=paper out=drum-300
+    scripts/run drum help                                         all keys
+"""
+
+import os
+import sys
+from typing import ClassVar, Literal, Optional
+
+if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's own
+    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
+
+import house  # noqa: E402, F401
+
+import numpy as np  # noqa: E402
+
+from graindrive import drum, drum_continuum, engines, fields, headless, lid, picture, progress  # noqa: E402
+from graindrive import recording, scene  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
+from graindrive.material import SpringDashpotMaterial  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.postproc import quantities  # noqa: E402
+from graindrive.postproc.drum import blocks, figure  # noqa: E402
+from graindrive.postproc.drum.campaign import REPORT  # noqa: E402
+from graindrive.postproc.drum.flow import SURFACE_LEVEL  # noqa: E402
+from graindrive.postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady  # noqa: E402
+from graindrive.postproc.statistics import block_mean  # noqa: E402
+from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
+from graindrive.yade_march import YadeMarch  # noqa: E402
+
+# Parameters -----------------------------------------------------------------------------------------------------------
+
+TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
+SMALLEST_DIAMETER, LARGEST_DIAMETER = 1.0, 1.2  # [d], uniform between
+GRAIN_MASS = np.pi / 4  # m, of a disk of d [rho d^2]
+TANGENTIAL_RATIO = 2 / 7  # k_t/k_n
+PAPERS_GRAINS = {150.0: 7700, 300.0: 30600, 450.0: 69200}  # D: N, at half filling
+PAPERS_WALL = {150.0: 475, 300.0: 632, 450.0: 946}  # D: N_w
+PAPERS_OMEGA = 6.28e-3  # sqrt(g/d), of its Figs. 2, 3(a) and 8
+BED_FRACTION = 0.828  # solid fraction at which the paper's grains fill half of the drum, mean over its three D
+WIDEST_GAP = 0.8  # [d] between disks of the wall; a grain of 1 d must not come through
+SMALLEST_DRUM = 20  # d
+CENTRIFUGES = 1.0  # Fr from which grains at the wall do not fall
+POURING_RESTITUTION, POURING_STEP, REST = 0.5, 5e-4, 1e-3  # [-]; [sqrt(d/g)] at k_n = 2e5 m g/d; [m g d]
+BLOCKS = 8  # in time, of the averages
+FIELD_SAMPLES = 1000  # moments that the fields average
+MOST_STARTS = 2  # times start_turn: then averages begin even if the flow still drifts
+MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
+RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
+OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # what may help the guard
+SERIES = quantities.units("series", "t turn centre_angle work torque", quantities.GRAIN)
+
+
+class DrumParameters(StudyParameters):
+    """What the drum study knows, in units of d, rho, g."""
+
+    unit_system: ClassVar[str] = quantities.GRAIN
+
+    model: Literal["dem", "continuum", "both"] = quantity(
+        "dem", "-", "grains, a continuum, or both and their difference"
+    )
+    drum_diameter: float = quantity(150.0, "d", "D of the circle on which the wall's disks lie", gt=0)
+    angular_velocity: Optional[float] = quantity(
+        None, "sqrt(g/d)", f"Omega, counter-clockwise; auto: by froude, or {PAPERS_OMEGA:g} without", gt=0
+    )
+    froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: by angular_velocity", gt=0)
+    filling: float = quantity(0.5, "-", "part of the drum that the bed fills", gt=0)
+    grains: Optional[int] = quantity(None, "-", "number of grains; auto: the paper's, or by filling", ge=1)
+    wall_disks: Optional[int] = quantity(None, "-", "disks of the wall; auto: the paper's, or as many as touch", ge=1)
+    friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
+    restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
+    stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
+    start_turn: float = quantity(180.0, "degrees", "turn of the drum before averages begin, at least", gt=0)
+    turn: float = quantity(360.0, "degrees", "turn of the drum over which is averaged", gt=0, lever=Lever(360, "lower"))
+    field_spacing: Optional[float] = quantity(
+        None, "d", "edge of the fields' bins; auto: 0.6, for drums over 200 d 1.2", gt=0, le=5
+    )
+    frames: int = quantity(
+        1, "-", "pictures of the drum that are kept, evenly in time, the last at the end", ge=1, le=9999
+    )
+    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+
+    @property
+    def omega(self):
+        """Angular velocity of the drum [sqrt(g/d)]."""
+        if self.angular_velocity is not None:
+            return self.angular_velocity
+        return PAPERS_OMEGA if self.froude is None else float(np.sqrt(2 * self.froude / self.drum_diameter))
+
+    @property
+    def count(self):
+        """Number of grains: half of the drum at `BED_FRACTION`, but for the paper's own."""
+        if self.grains is not None:
+            return self.grains
+        mean_square = (SMALLEST_DIAMETER**2 + SMALLEST_DIAMETER * LARGEST_DIAMETER + LARGEST_DIAMETER**2) / 3
+        half = PAPERS_GRAINS.get(self.drum_diameter, BED_FRACTION * self.drum_diameter**2 / 2 / mean_square)
+        return round(2 * self.filling * half)
+
+    @property
+    def wall_count(self):
+        """Number of the wall's disks."""
+        touching = round(np.pi * self.drum_diameter)
+        return PAPERS_WALL.get(self.drum_diameter, touching) if self.wall_disks is None else self.wall_disks
+
+    @property
+    def spacing(self):
+        """Edge of the fields' bins [d]."""
+        return (0.6 if self.drum_diameter <= 200 else 1.2) if self.field_spacing is None else self.field_spacing
+
+    @property
+    def froude_number(self):
+        """Omega^2 D/2g [-]."""
+        return self.omega**2 * self.drum_diameter / 2
+
+    def auto_values(self):
+        """Return what is taken for the keys that are auto."""
+        return dict(
+            angular_velocity=self.omega,
+            froude=self.froude_number,
+            grains=self.count,
+            wall_disks=self.wall_count,
+            field_spacing=self.spacing,
+        )
+
+
+PRESETS = {
+    "smoke": dict(drum_diameter=40, froude=3e-3, start_turn=60, turn=90, dt_factor=5),
+    "demo": dict(start_turn=90, turn=90, dt_factor=5),
+    "paper": {},
+}
+
+
+def time_step(p):
+    """Return the time step [sqrt(d/g)]."""
+    return TIME_STEP * p.dt_factor
+
+
+def radians_per_step(p):
+    """Return by how much the drum turns in a step [rad]."""
+    return p.omega * time_step(p)
+
+
+# Scene ----------------------------------------------------------------------------------------------------------------
+
+
+def material(p, restitution=None):
+    """The paper's grains, section II.2.2, or with another restitution."""
+    stiffness = p.stiffness * GRAIN_MASS
+    e = p.restitution if restitution is None else restitution
+    return SpringDashpotMaterial(stiffness, TANGENTIAL_RATIO * stiffness, e, p.friction, 1.0)
+
+
+def recipe(p):
+    """Return the recipe of the drum and its grains at rest."""
+    return drum.DrumRecipe(
+        diameter=p.drum_diameter,
+        wall_disks=p.wall_count,
+        grains=p.count,
+        d_min=SMALLEST_DIAMETER,
+        d_max=LARGEST_DIAMETER,
+        material=material(p, min(p.restitution, POURING_RESTITUTION)),
+        dt=POURING_STEP * float(np.sqrt(2e5 / p.stiffness)),
+        rest=REST,
+        seed=p.seed,
+    )
+
+
+def build(p, grains, dt):
+    """Put wall, grains, drive and measures into YADE; return ids of the grains (first, behind the last) and of the wall."""
+    from yade import O
+
+    with recording.overlap_advice(OVERLAP_KEYS):
+        packed = drum.settled(recipe(p))
+    drum.start()
+    wall = drum.add_wall(p.drum_diameter, p.wall_count, grains.density)
+    ids = scene.add_disks(packed["x"], packed["y"], packed["r"], grains.density)
+    O.dt = dt
+    scene.run_as_asked(p, grains, gravity=1.0, between=[field_averager(p, dt), imposed_turn(p, wall)])
+    return dict(grains=[int(ids[0]), int(ids[-1]) + 1], wall=int(wall), average_row=-1, steady=0)
+
+
+# Drive ----------------------------------------------------------------------------------------------------------------
+
+
+def imposed_turn(p, wall):
+    """Return the drive that turns the wall about the drum's axis."""
+    return engines.DrumDrive(bodies=[wall], angularVelocity=(0, 0, p.omega), label="drive")
+
+
+# Measure --------------------------------------------------------------------------------------------------------------
+
+
+def field_averager(p, dt):
+    """Return the averager of fields about the axis, block by block in time; it sleeps until the flow is steady."""
+    reach = float(np.ceil(p.drum_diameter / 2 / p.spacing)) * p.spacing
+    corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=p.spacing, kernel="diskBin", stress=False)
+    steps = rows_of_window(p) * block_steps(p)
+    timing = dict(
+        every=max(1, steps // FIELD_SAMPLES), phases=BLOCKS, period=(steps + 0.5) * dt
+    )  # its end is in the last block
+    return engines.FieldAverager(dead=True, label="dem", **timing, **corners)
+
+
+def block_steps(p):
+    """Return the steps between two rows of the series: a degree of turn, or less where that is much of a block in time."""
+    degrees = min(1.0, p.start_turn / (STRETCHES * 2 * FEWEST_ROWS), p.turn / (4 * BLOCKS))
+    return max(1, int(np.radians(degrees) / radians_per_step(p)))
+
+
+def rows_of_start(p):
+    """Return how many rows go by before the averages may begin."""
+    return int(np.ceil(np.radians(p.start_turn) / (radians_per_step(p) * block_steps(p)) - 1e-9))
+
+
+def rows_of_window(p):
+    """Return how many rows the averages go over."""
+    return max(1, round(np.radians(p.turn) / (radians_per_step(p) * block_steps(p))))
+
+
+def most_rows(p):
+    """Return how many rows a run has that is steady as late as is waited for."""
+    return MOST_STARTS * rows_of_start(p) + rows_of_window(p)
+
+
+# Run ------------------------------------------------------------------------------------------------------------------
+
+
+def check(p):
+    """Refuse values that no run can be made of; return the time step over the critical one."""
+    check_speed(p)
+    check_room(p)
+    if p.model != "dem":
+        drum_continuum.check(p)
+    dt, grains = time_step(p), material(p)
+    ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap)
+    most, weight = grains.force_between(0.5, p.largest_overlap), lid.weight_of_bed(p.drum_diameter)
+    if weight > most:
+        raise UsageError(
+            f"a drum of {p.drum_diameter:g} d presses its lowest grains with up to {weight:.3g} rho g d, but they bear"
+            f" {most:.3g} at largest_overlap={p.largest_overlap:g} R; raise stiffness"
+        )
+    progress.require_feasible(np.radians(MOST_STARTS * p.start_turn + p.turn) / radians_per_step(p))
+    if np.radians(min(p.turn / BLOCKS, p.start_turn)) < 4 * radians_per_step(p):
+        raise UsageError(
+            f"the drum turns by {np.degrees(radians_per_step(p)):.3g} degrees in a step: turn={p.turn:g} must hold four of them"
+            f" in each of {BLOCKS} blocks, and start_turn={p.start_turn:g} four; raise them or lower dt_factor"
+        )
+    return ratio
+
+
+def check_speed(p):
+    """UsageError unless one of angular_velocity and froude says how fast the drum turns, and grains do not cling to it."""
+    if p.angular_velocity is not None and p.froude is not None:
+        raise UsageError(
+            f"angular_velocity={p.angular_velocity:g} and froude={p.froude:g} both say how fast the drum turns; give one"
+        )
+    if p.froude_number >= CENTRIFUGES:
+        raise UsageError(
+            f"Omega={p.omega:.3g} sqrt(g/d) is Fr={p.froude_number:.3g} at D={p.drum_diameter:g} d: from {CENTRIFUGES:g} on grains"
+            " are centrifuged; lower angular_velocity or froude"
+        )
+
+
+def check_room(p):
+    """UsageError for a drum that is too small, leaky, empty or too full."""
+    if p.drum_diameter < SMALLEST_DRUM:
+        raise UsageError(
+            f"drum_diameter={p.drum_diameter:g} d has no room for a flow of grains of up to {LARGEST_DIAMETER:g} d; it must be at"
+            f" least {SMALLEST_DRUM} d"
+        )
+    if p.filling > drum.MOST_FILLING:
+        raise UsageError(
+            f"filling={p.filling:g} leaves the grains no room to be poured and to flow; it must be at most {drum.MOST_FILLING:g}"
+        )
+    gap = p.drum_diameter * np.sin(np.pi / p.wall_count) - 1
+    if gap > WIDEST_GAP or p.wall_count < 3:
+        raise UsageError(
+            f"wall_disks={p.wall_count} leave gaps of {gap:.3g} d, through which grains leave; at least"
+            f" {int(np.ceil(np.pi * p.drum_diameter / (1 + WIDEST_GAP)))} are needed"
+        )
+    if (bins := (p.drum_diameter / p.spacing) ** 2 * BLOCKS) > MOST_BINS:
+        raise UsageError(f"field_spacing={p.spacing:g} d makes {bins:.2g} bins, more than {MOST_BINS:.0e}; raise it")
+    drum.check(recipe(p))
+
+
+def run(p, folder):
+    """Do what `model` asks for, then read surface, profile and thickness off the fields, and compare the two."""
+    ratio, flows = check(p), {}
+    if p.model != "continuum":
+        flows["dem"] = run_grains(p, folder, ratio)
+    if p.model != "dem":
+        flows["continuum"] = drum_continuum.run(p, folder)
+    flows = {model: blocks.steady_flow(seen, p.drum_diameter, p.omega) for model, seen in flows.items()}
+    keep(p, folder, flows)
+
+
+def keep(p, folder, flows):
+    """Store what the `Steady` flows of the models give; beside that of grains the continuum's numbers bear its name."""
+    folder.summarize(froude=p.froude_number)
+    for model, flow in flows.items():
+        beside = "continuum_" if model != next(iter(flows)) else ""
+        for name, value in flow.summary.items():
+            folder.summarize(**{f"{beside}{name}": (value, unit_of_summary(name)) if beside else value})
+        folder.write(f"depth/{model}", flow.profile)
+    if len(flows) > 1:
+        value, error = blocks.dem_continuum_difference(flows["dem"], flows["continuum"], p.drum_diameter)
+        folder.summarize(dem_continuum_difference=value, dem_continuum_difference_err=error)
+
+
+def unit_of_summary(name):
+    """Return the unit of a quantity; None for a standard error, which has none of its own."""
+    return None if name.endswith("_err") else quantities.unit_of("summary", name, quantities.GRAIN)
+
+
+def run_grains(p, folder, ratio):
+    """Pour the grains, turn the drum, average the steady flow; or go on where an interrupted run left off; return `Blocks`."""
+    dt, grains, march = time_step(p), material(p), YadeMarch()
+    if folder.resumed:
+        stage = recording.load_stage(folder, march, ("grains", "wall", "average_row", "steady"))
+    else:
+        stage = build(p, grains, dt)
+    beads = np.column_stack(drum.wall_places(p.drum_diameter, p.wall_count))
+    folder.write("intruder", dict(beads=(beads, "d"), bead_radius=(0.5, "d")))
+    march.grains = stage["grains"][1] - stage["grains"][0]
+    also = f" Fr = {p.froude_number:.3g}, a turn in {2 * np.pi / p.omega:.4g} sqrt(d/g),"
+    recording.announce(folder, grains=march.grains, dt=dt, ratio=ratio, unit="sqrt(d/g)", also=also)
+    return record(p, folder, march, stage)
+
+
+def record(p, folder, march, stage):
+    """Run in blocks of a degree or less; keep series, frames, checkpoints and, once the flow is steady, its fields; return them."""
+    from yade import O
+
+    folder.declare_series(**SERIES)
+    drive, around, ids = O.labeledEngine("drive"), O.labeledEngine("dem"), range(*stage["grains"])
+    block, track = block_steps(p), recording.Track(folder)
+    due = np.linspace((rows_of_start(p) + rows_of_window(p)) * block, 0, p.frames, endpoint=False).round()[::-1]
+    frames = recording.Frames(folder, due, lambda: picture.taken(ids, [], stage["wall"]))
+
+    def sample(done):
+        track.append(row_of(p, march, drive, ids))
+        if done == 0:
+            return False
+        folder.append(**series_row(p, track.columns))
+        number = len(track) - 1
+        if stage["average_row"] < 0 and number >= rows_of_start(p):
+            drifts = not is_steady(*(track.columns[name] for name in ("turn", "centre_angle")), p.start_turn)
+            if not drifts or number >= MOST_STARTS * rows_of_start(p):
+                stage.update(average_row=number, steady=int(not drifts))
+                around.phaseStart, around.dead = march.time, False
+        return 0 <= stage["average_row"] <= number - rows_of_window(p)
+
+    with recording.overlap_advice(OVERLAP_KEYS):
+        recording.run_sampled(
+            folder,
+            march,
+            int(most_rows(p) * block),
+            block,
+            sample,
+            track=track,
+            frames=frames,
+            stage=stage,
+            label=f"turning by {p.start_turn + p.turn:g} degrees",
+        )
+    fields.write_fields(folder, "dem", around, fields.GRAIN)
+    keep_means(p, folder, track.arrays(), stage)
+    fraction, velocity, samples = around.areaFraction, around.velocity, around.samples
+    return blocks.blocks_of(around.x, around.y, fraction, velocity, samples, SURFACE_LEVEL["dem"])
+
+
+def row_of(p, march, drive, ids):
+    """Return what is known of the drum now: time, turn [degrees], work done on the grains, their centre of mass' angle."""
+    grains = scene.rows_of(ids)
+    drum.require_inside(p.drum_diameter, grains)
+    angle = centre_angle(grains["x"], grains["y"], grains["r"] ** 2)
+    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), centre_angle=angle, work=float(drive.work))
+
+
+def series_row(p, columns):
+    """Return the last row of the series; its torque of the grains on the drum is the mean since the row before."""
+    row = {name: column[-1] for name, column in columns.items()}
+    given, took = (columns[name][-1] - columns[name][-2] for name in ("work", "t"))
+    return dict(row, torque=-given / (p.omega * took))
+
+
+def keep_means(p, folder, columns, stage):
+    """Store the means of the series over the averages' window."""
+    first, series = stage["average_row"], columns
+    torque = -np.diff(series["work"]) / (p.omega * np.diff(series["t"]))
+    for name, values in dict(torque=torque[first:], centre_angle=series["centre_angle"][first + 1 :]).items():
+        mean = block_mean(values)
+        folder.summarize(**{name: mean.value, f"{name}_err": mean.error})
+    if not stage["steady"]:
+        print(
+            f"the flow still drifted after {MOST_STARTS * p.start_turn:g} degrees, where its averages begin; raise start_turn",
+            file=sys.stderr,
+        )
+    start = series["turn"][first]
+    folder.summarize(steady=stage["steady"], averaged_from=start, averaged_turn=series["turn"][-1] - start)
+
+
+# Study ----------------------------------------------------------------------------------------------------------------
+
+
+def particle_steps(p):
+    """Return grains times steps of a run that is steady at once."""
+    return p.count * np.radians(p.start_turn + p.turn) / radians_per_step(p)
+
+
+def core_seconds(p):
+    """Return the seconds that a run takes one core, grains and continuum."""
+    grains = particle_steps(p) / np.interp(p.count, *RATES) if p.model != "continuum" else 0.0
+    return grains + (drum_continuum.seconds(p) if p.model != "dem" else 0.0)
+
+
+STUDY = Study(
+    name="drum",
+    parameters=DrumParameters,
+    presets=PRESETS,
+    observables=observables(
+        quantities.GRAIN,
+        "thickness_over_diameter",
+        "thickness_over_diameter froude surface_angle_deg packing_fraction layer_over_diameter surface_over_diameter"
+        " surface_speed flow_down flow_up flow_balance rigid_deviation torque centre_angle",
+    ),
+    cost=Cost(particle_steps, lambda p: particle_steps(p) / max(core_seconds(p), 1e-9)),
+    check=check,
+    run=run,
+    figure=figure.draw,
+    report=REPORT,
+    constants={
+        "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
+        "grain_mass": Constant(GRAIN_MASS, "rho d^2", "m, of a disk of d"),
+        "smallest_diameter": Constant(SMALLEST_DIAMETER, "d", "of the grains"),
+        "largest_diameter": Constant(LARGEST_DIAMETER, "d", "of the grains, uniform between"),
+    },
+)
+
+if __name__ == "__main__":
+    headless.main(STUDY)
