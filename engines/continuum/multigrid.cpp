@@ -178,6 +178,15 @@ Lanes positive(const Lanes& a)
 	return a > zero ? a : zero;
 }
 
+// Marks which cells take anything of coarse cells, and counts the open cells that do not.
+inline void mark(const Links& a, std::size_t place, const Lanes& whole, Interpolation& p)
+{
+	const Lanes zero = {}, one = zero + 1;
+	const Lanes takes = whole > zero ? one : zero;
+	pack(p.takes.data() + place) = takes;
+	p.gaps += pack(a.inverse + place) > zero ? one - takes : zero;
+}
+
 // Between two coarse cells each counts by its links (of three kinds on a nine-point grid) towards the cell in between.
 template <bool nine>
 void interpolate_rows(const Links& a, Interpolation& p, int y)
@@ -190,6 +199,7 @@ void interpolate_rows(const Links& a, Interpolation& p, int y)
 			west = positive(west + pack(a.north_west + at.here + k) + pack(a.north_east + at.south_west + k));
 			east = positive(east + pack(a.north_east + at.here + k) + pack(a.north_west + at.south_east + k));
 		}
+		mark(a, at.here + k, west + east, p);
 		pack(p.west.row(y) + k) = share(west, west + east);
 		pack(p.east.row(y) + k) = share(east, west + east);
 	}
@@ -206,6 +216,7 @@ void interpolate_columns(const Links& a, Interpolation& p, int y)
 			south = positive(south + pack(a.north_east + at.south_west + k) + pack(a.north_west + at.south_east + k));
 			north = positive(north + pack(a.north_east + at.here + k) + pack(a.north_west + at.here + k));
 		}
+		mark(a, at.here + k, south + north, p);
 		pack(p.south.row(y) + k) = share(south, south + north);
 		pack(p.north.row(y) + k) = share(north, south + north);
 	}
@@ -231,6 +242,7 @@ void interpolate_middles(const Links& a, Interpolation& p, int y)
 			ne = positive(ne + pack(a.north_east + at.here + k));
 		}
 		const Lanes whole = (sw + se) + (nw + ne);
+		mark(a, at.here + k, whole, p);
 		pack(p.south_west.row(y) + k) = share(sw, whole);
 		pack(p.south_east.row(y) + k) = share(se, whole);
 		pack(p.north_west.row(y) + k) = share(nw, whole);
@@ -241,6 +253,7 @@ void interpolate_middles(const Links& a, Interpolation& p, int y)
 template <bool nine>
 void interpolate(const Links& a, Interpolation& p, int coarse_ny)
 {
+	p.gaps = Lanes{};
 	for (int y = 0; y < coarse_ny; ++y) interpolate_rows<nine>(a, p, y);
 	for (int y = 0; y < coarse_ny; ++y) {
 		interpolate_columns<nine>(a, p, y);
@@ -266,6 +279,8 @@ struct Around {
 		return pack(links + place(dx, dy));
 	}
 
+	Lanes takes(int dx, int dy) const { return pack(p.takes.data() + place(dx, dy)); }
+
 	// What (dx, dy) takes of the coarse cell (k, y) + (cx, cy).
 	Lanes weight(int dx, int dy, int cx, int cy) const
 	{
@@ -281,8 +296,9 @@ struct Around {
 	}
 };
 
-// A times the column of P that belongs to the coarse cells, at (dx, dy).
-template <bool nine>
+// A times the column of P that belongs to the coarse cells, at (dx, dy). Links to cells that take nothing of coarse cells are left out
+// (`gaps`: there are such cells): they would leave the coarse matrix with too small a diagonal, and so indefinite.
+template <bool nine, bool gaps>
 inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int dx, int dy)
 {
 	const Lanes here = cells.weight(dx, dy, 0, 0);
@@ -295,13 +311,17 @@ inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int 
 			const int ex = dx + ax, ey = dy + ay;
 			const bool both_outside = (dx < -1 || dx > 1 || dy < -1 || dy > 1) && (ex < -1 || ex > 1 || ey < -1 || ey > 1);
 			if (both_outside) continue;
-			sum += cells.link(dx, dy, ax, ay) * (here - cells.weight(ex, ey, 0, 0));
+			const Lanes there = cells.weight(ex, ey, 0, 0);
+			if constexpr (gaps)
+				sum += cells.link(dx, dy, ax, ay) * (here * cells.takes(ex, ey) - there * cells.takes(dx, dy));
+			else
+				sum += cells.link(dx, dy, ax, ay) * (here - there);
 		}
 	return sum;
 }
 
 // The links of the coarse cells to the east, north, north-east and north-west: -(column of P of the neighbour)^T A (column of P).
-template <bool nine>
+template <bool nine, bool gaps>
 inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lanes& east, Lanes& north, Lanes& north_east, Lanes& north_west)
 {
 	const Lanes zero = {};
@@ -311,7 +331,7 @@ inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lan
 #pragma GCC unroll 5
 		for (int dx = -2; dx <= 2; ++dx) {
 			if (dy < 1 && dx < 1) continue;
-			const Lanes product = product_at<nine>(cells, dx, dy);
+			const Lanes product = product_at<nine, gaps>(cells, dx, dy);
 			if (dx > 0 && dy < 2) east -= cells.weight(dx, dy, 1, 0) * product;
 			if (dx > -2 && dx < 2 && dy > 0) north -= cells.weight(dx, dy, 0, 1) * product;
 			if (dx > 0 && dy > 0) north_east -= cells.weight(dx, dy, 1, 1) * product;
@@ -319,21 +339,35 @@ inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lan
 		}
 }
 
-template <bool nine>
-void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField (&row_of)[4])
+template <bool nine, bool gaps>
+void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField& rows)
 {
-	Field<double>* const links[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west };
+	Field<double>* const fields[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west, &coarse.inverse_diagonal };
 	for (int y = 0; y < coarse.grid.ny; ++y) {
-		const Span span = (*a.spans)[2 * y];
-		if (span.first == span.last) continue;
+		const Span span = (*a.spans)[2 * y], coarse_span = coarse.spans[y];
+		const double* inverse = a.inverse + a.grid->offset(2 * y, 0);
 		for (int k = span.first; k < span.last; k += lanes) {
 			Lanes link[4];
-			coarse_links<nine>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
-			for (int n = 0; n < 4; ++n) pack(row_of[n].row(0) + k) = link[n];
+			coarse_links<nine, gaps>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
+			for (int n = 0; n < 4; ++n) pack(rows.row(n) + k) = link[n];
+			pack(rows.row(4) + k) = pack(inverse + k);
 		}
-		for (int n = 0; n < 4; ++n) split_span(row_of[n].row(0), coarse.spans[y], links[n]->row(y, 0), links[n]->row(y, 1));
-		split_span(a.inverse + a.grid->offset(2 * y, 0), coarse.spans[y], coarse.inverse_diagonal.row(y, 0), coarse.inverse_diagonal.row(y, 1));
+		for (int n = 0; n < 5; ++n) {
+			std::fill(rows.row(n) + 2 * coarse_span.first, rows.row(n) + span.first, 0);
+			std::fill(rows.row(n) + span.last, rows.row(n) + 2 * coarse_span.last, 0);
+			split_span(rows.row(n), coarse_span, fields[n]->row(y, 0), fields[n]->row(y, 1));
+		}
 	}
+}
+
+template <bool nine>
+void coarsen(const Links& a, Interpolation& p, NinePoint& coarse, PlainField& rows)
+{
+	interpolate<nine>(a, p, coarse.grid.ny);
+	if (sum_of<double>(p.gaps) > 0)
+		link_coarse<nine, true>(a, p, coarse, rows);
+	else
+		link_coarse<nine, false>(a, p, coarse, rows);
 }
 
 // A coarse cell is linked to nothing if its diagonal is rounding beside the finer diagonal: then a part has shrunk to that cell.
@@ -369,7 +403,9 @@ void Multigrid::Coarse::reshape(const SplitGrid& finer, const std::vector<Span>&
 		*field = Field<double>(a.grid);
 	for (PlainField* field : { &p.west, &p.east, &p.south, &p.north, &p.south_west, &p.south_east, &p.north_west, &p.north_east, &plain })
 		*field = PlainField(nx, ny);
-	for (PlainField& row : rows) row = PlainField(nx, 1);
+	rows = PlainField(nx, 5);
+	p.takes = Field<double>(finer);
+	for (int y = 0; y < finer.ny; y += 2) std::fill_n(p.takes.row(y, 0), nx, 1);
 }
 
 void Multigrid::update(const FivePoint& matrix, bool new_shape)
@@ -389,13 +425,10 @@ void Multigrid::update(const FivePoint& matrix, bool new_shape)
 	for (std::size_t level = 0; level < coarse.size(); ++level) {
 		Coarse& to = *coarse[level];
 		const Links a = level == 0 ? links_of(matrix) : links_of(coarse[level - 1]->a);
-		if (level == 0) {
-			interpolate<false>(a, to.p, to.a.grid.ny);
-			link_coarse<false>(a, to.p, to.a, to.rows);
-		} else {
-			interpolate<true>(a, to.p, to.a.grid.ny);
-			link_coarse<true>(a, to.p, to.a, to.rows);
-		}
+		if (level == 0)
+			coarsen<false>(a, to.p, to.a, to.rows);
+		else
+			coarsen<true>(a, to.p, to.a, to.rows);
 		invert_diagonal(to.a);
 	}
 }
