@@ -32,7 +32,10 @@ struct DrumExample {
 	{
 		return 0.3 * std::sin(2.5 * y / radius() + phase) + 0.2 * std::cos(7 * x / radius() - 3 * y / radius() + 2 * phase);
 	}
-	double force_y(double x, double y) const { return -1 + 0.3 * std::cos(3 * x / radius() - phase) + 0.2 * std::sin(5 * (x + y) / radius() + phase); }
+	double force_y(double x, double y) const
+	{
+		return -1 + 0.3 * std::cos(3 * x / radius() - phase) + 0.2 * std::sin(5 * (x + y) / radius() + phase);
+	}
 
 	FaceCoefficients coefficients() const
 	{

@@ -25,7 +25,8 @@ void Extrapolation::predict(std::vector<double>& p) const
 {
 	if (known == 0) return;
 	p.resize(solution(0).size());
-	const double *one = solution(0).data(), *two = known > 1 ? solution(1).data() : one, *three = known > 2 ? solution(2).data() : nullptr;
+	const double *one = solution(0).data(), *two = known > 1 ? solution(1).data() : one,
+				 *three = known > 2 ? solution(2).data() : nullptr;
 	if (three)
 		for (std::size_t i = 0; i < p.size(); ++i) p[i] = 3 * (one[i] - two[i]) + three[i];
 	else

@@ -5,7 +5,8 @@ namespace graindrive::continuum {
 
 bool FivePoint::update(const FaceCoefficients& b)
 {
-	const double least = closed_below * checked_largest(b);
+	largest_link = checked_largest(b);
+	const double least = closed_below * largest_link;
 	const bool new_shape = connected.update(b, least);
 	if (new_shape) {
 		shape.nx = b.nx, shape.ny = b.ny;

@@ -27,6 +27,7 @@ public:
 	const Parts& parts() const { return connected; }
 	const std::vector<Span>& spans() const { return connected.spans(); }
 	double spacing() const { return width; }
+	double largest() const { return largest_link; }
 
 	/// product = A u; the result is u A u.
 	double multiply(const Field<double>& u, Field<double>& product) const;
@@ -42,7 +43,7 @@ private:
 
 	SplitGrid shape;
 	Parts connected;
-	double width = 1;
+	double width = 1, largest_link = 0;
 	std::vector<double> row;
 };
 

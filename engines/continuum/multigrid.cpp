@@ -13,18 +13,25 @@ struct Links {
 	const double *east, *north, *north_east, *north_west, *inverse;
 };
 
-Links links_of(const FivePoint& a) { return { &a.grid(), &a.spans(), a.east.data(), a.north.data(), nullptr, nullptr, a.inverse_diagonal.data() }; }
+Links links_of(const FivePoint& a)
+{
+	return { &a.grid(), &a.spans(), a.east.data(), a.north.data(), nullptr, nullptr, a.inverse_diagonal.data() };
+}
 Links links_of(const NinePoint& a)
 {
-	return { &a.grid, &a.spans, a.east.data(), a.north.data(), a.north_east.data(), a.north_west.data(), a.inverse_diagonal.data() };
+	return { &a.grid, &a.spans, a.east.data(), a.north.data(), a.north_east.data(), a.north_west.data(),
+		a.inverse_diagonal.data() };
 }
 
 // Sums of link times neighbour, by kind of neighbour.
 struct Neighbours : NeighbourRows {
 	std::size_t north_west, north_east, south_west, south_east;
 	Neighbours(const SplitGrid& grid, int y, int parity)
-		: NeighbourRows(grid, y, parity), north_west(grid.offset(y + 1, 1 - parity) + parity - 1), north_east(north_west + 1),
-		  south_west(grid.offset(y - 1, 1 - parity) + parity - 1), south_east(south_west + 1)
+		: NeighbourRows(grid, y, parity),
+		  north_west(grid.offset(y + 1, 1 - parity) + parity - 1),
+		  north_east(north_west + 1),
+		  south_west(grid.offset(y - 1, 1 - parity) + parity - 1),
+		  south_east(south_west + 1)
 	{
 	}
 	Lanes of_row(const Links& a, const double* u, int k) const
@@ -37,8 +44,10 @@ struct Neighbours : NeighbourRows {
 	}
 	Lanes of_diagonals(const Links& a, const double* u, int k) const
 	{
-		return (pack(a.north_east + here + k) * pack(u + north_east + k) + pack(a.north_east + south_west + k) * pack(u + south_west + k)) +
-			   (pack(a.north_west + here + k) * pack(u + north_west + k) + pack(a.north_west + south_east + k) * pack(u + south_east + k));
+		return (pack(a.north_east + here + k) * pack(u + north_east + k) +
+				   pack(a.north_east + south_west + k) * pack(u + south_west + k)) +
+		       (pack(a.north_west + here + k) * pack(u + north_west + k) +
+				   pack(a.north_west + south_east + k) * pack(u + south_east + k));
 	}
 };
 
@@ -135,12 +144,14 @@ void restrict_to(const Links& a, const Interpolation& p, const double* rest, Pla
 	for (int y = 0; y < coarse_ny; ++y) {
 		const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
 					 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
-		const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y), *south_east = p.south_east.row(y),
-					 *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
+		const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y),
+					 *south_east = p.south_east.row(y), *north_west = p.north_west.row(y - 1),
+					 *north_east = p.north_east.row(y - 1);
 		double* to = f.row(y);
 		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
-			Lanes sum = pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
-										   (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
+			Lanes sum =
+				pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
+									 (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
 			if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
 			pack(to + k) = sum;
 		}
@@ -153,15 +164,18 @@ void correct(const Links& a, const Interpolation& p, const PlainField& correctio
 {
 	for (int y = 0; y < coarse_ny; ++y) {
 		const double *c = correction.row(y), *above = correction.row(y + 1);
-		double *here = u + a.grid->offset(2 * y, 0), *beside = u + a.grid->offset(2 * y, 1), *middle = u + a.grid->offset(2 * y + 1, 1);
+		double *here = u + a.grid->offset(2 * y, 0), *beside = u + a.grid->offset(2 * y, 1),
+			   *middle = u + a.grid->offset(2 * y + 1, 1);
 		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
 			pack(here + k) += pack(c + k);
-			if constexpr (rows) pack(beside + k) += pack(p.west.row(y) + k) * pack(c + k) + pack(p.east.row(y) + k) * pack(c + k + 1);
+			if constexpr (rows)
+				pack(beside + k) += pack(p.west.row(y) + k) * pack(c + k) + pack(p.east.row(y) + k) * pack(c + k + 1);
 		}
 		const Span span = span_or_none(a, 2 * y + 1);
 		for (int k = span.first; k < span.last; k += lanes)
-			pack(middle + k) += (pack(p.south_west.row(y) + k) * pack(c + k) + pack(p.south_east.row(y) + k) * pack(c + k + 1)) +
-								(pack(p.north_west.row(y) + k) * pack(above + k) + pack(p.north_east.row(y) + k) * pack(above + k + 1));
+			pack(middle + k) +=
+				(pack(p.south_west.row(y) + k) * pack(c + k) + pack(p.south_east.row(y) + k) * pack(c + k + 1)) +
+				(pack(p.north_west.row(y) + k) * pack(above + k) + pack(p.north_east.row(y) + k) * pack(above + k + 1));
 	}
 }
 
@@ -288,10 +302,10 @@ struct Around {
 		dx -= 2 * cx, dy -= 2 * cy;
 		if (dx < -1 || dx > 1 || dy < -1 || dy > 1) return zero;
 		if (dx == 0 && dy == 0) return zero + 1;
-		const PlainField& of = dy == 0 ? (dx > 0 ? p.west : p.east)
-							 : dx == 0 ? (dy > 0 ? p.south : p.north)
-							 : dy > 0  ? (dx > 0 ? p.south_west : p.south_east)
-									   : (dx > 0 ? p.north_west : p.north_east);
+		const PlainField& of = dy == 0   ? (dx > 0 ? p.west : p.east)
+		                       : dx == 0 ? (dy > 0 ? p.south : p.north)
+		                       : dy > 0  ? (dx > 0 ? p.south_west : p.south_east)
+		                                 : (dx > 0 ? p.north_west : p.north_east);
 		return pack(of.row(y + cy + (dy < 0 ? -1 : 0)) + k + cx + (dx < 0 ? -1 : 0));
 	}
 };
@@ -322,7 +336,8 @@ inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int 
 
 // The links of the coarse cells to the east, north, north-east and north-west: -(column of P of the neighbour)^T A (column of P).
 template <bool nine, bool gaps>
-inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lanes& east, Lanes& north, Lanes& north_east, Lanes& north_west)
+inline __attribute__((always_inline)) void coarse_links(
+	const Around& cells, Lanes& east, Lanes& north, Lanes& north_east, Lanes& north_west)
 {
 	const Lanes zero = {};
 	east = north = north_east = north_west = zero;
@@ -339,10 +354,12 @@ inline __attribute__((always_inline)) void coarse_links(const Around& cells, Lan
 		}
 }
 
+// `closed`: what counts as the inverse diagonal of a closed cell.
 template <bool nine, bool gaps>
-void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField& rows)
+void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField& rows, double closed)
 {
-	Field<double>* const fields[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west, &coarse.inverse_diagonal };
+	Field<double>* const fields[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west,
+		&coarse.inverse_diagonal };
 	for (int y = 0; y < coarse.grid.ny; ++y) {
 		const Span span = (*a.spans)[2 * y], coarse_span = coarse.spans[y];
 		const double* inverse = a.inverse + a.grid->offset(2 * y, 0);
@@ -350,7 +367,8 @@ void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, Plai
 			Lanes link[4];
 			coarse_links<nine, gaps>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
 			for (int n = 0; n < 4; ++n) pack(rows.row(n) + k) = link[n];
-			pack(rows.row(4) + k) = pack(inverse + k);
+			const Lanes own = pack(inverse + k), zero = {};
+			pack(rows.row(4) + k) = own > zero ? own : zero + closed;  // a closed cell may stand for open ones beside it
 		}
 		for (int n = 0; n < 5; ++n) {
 			std::fill(rows.row(n) + 2 * coarse_span.first, rows.row(n) + span.first, 0);
@@ -361,13 +379,13 @@ void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, Plai
 }
 
 template <bool nine>
-void coarsen(const Links& a, Interpolation& p, NinePoint& coarse, PlainField& rows)
+void coarsen(const Links& a, Interpolation& p, NinePoint& coarse, PlainField& rows, double closed)
 {
 	interpolate<nine>(a, p, coarse.grid.ny);
 	if (sum_of<double>(p.gaps) > 0)
-		link_coarse<nine, true>(a, p, coarse, rows);
+		link_coarse<nine, true>(a, p, coarse, rows, closed);
 	else
-		link_coarse<nine, false>(a, p, coarse, rows);
+		link_coarse<nine, false>(a, p, coarse, rows, closed);
 }
 
 // A coarse cell is linked to nothing if its diagonal is rounding beside the finer diagonal: then a part has shrunk to that cell.
@@ -382,8 +400,9 @@ void invert_diagonal(NinePoint& a)
 			const Neighbours at(a.grid, y, parity);
 			for (int k = a.spans[y].first; k < a.spans[y].last; k += lanes) {
 				const std::size_t i = at.here + k;
-				const Lanes diagonal = (pack(links.east + i) + pack(links.east + at.west + k)) + (pack(links.north + i) + pack(links.north + at.south + k)) +
-									   ((pack(links.north_east + i) + pack(links.north_east + at.south_west + k)) +
+				const Lanes diagonal = (pack(links.east + i) + pack(links.east + at.west + k)) +
+				                       (pack(links.north + i) + pack(links.north + at.south + k)) +
+				                       ((pack(links.north_east + i) + pack(links.north_east + at.south_west + k)) +
 										   (pack(links.north_west + i) + pack(links.north_west + at.south_east + k)));
 				Lanes& inverse = pack(a.inverse_diagonal.data() + i);
 				inverse = diagonal * inverse > zero + least_coarse_diagonal ? one / diagonal : zero;
@@ -398,10 +417,12 @@ void Multigrid::Coarse::reshape(const SplitGrid& finer, const std::vector<Span>&
 	a.grid.nx = (finer.nx + 1) / 2, a.grid.ny = (finer.ny + 1) / 2;
 	const int nx = a.grid.nx, ny = a.grid.ny;
 	a.spans.resize(ny);
-	for (int y = 0; y < ny; ++y) a.spans[y] = { rounded_down(finer_spans[2 * y].first / 2), rounded_up((finer_spans[2 * y].last + 1) / 2) };
+	for (int y = 0; y < ny; ++y)
+		a.spans[y] = { rounded_down(finer_spans[2 * y].first / 2), rounded_up((finer_spans[2 * y].last + 1) / 2) };
 	for (Field<double>* field : { &a.east, &a.north, &a.north_east, &a.north_west, &a.inverse_diagonal, &f, &u, &rest })
 		*field = Field<double>(a.grid);
-	for (PlainField* field : { &p.west, &p.east, &p.south, &p.north, &p.south_west, &p.south_east, &p.north_west, &p.north_east, &plain })
+	for (PlainField* field :
+		{ &p.west, &p.east, &p.south, &p.north, &p.south_west, &p.south_east, &p.north_west, &p.north_east, &plain })
 		*field = PlainField(nx, ny);
 	rows = PlainField(nx, 5);
 	p.takes = Field<double>(finer);
@@ -426,9 +447,9 @@ void Multigrid::update(const FivePoint& matrix, bool new_shape)
 		Coarse& to = *coarse[level];
 		const Links a = level == 0 ? links_of(matrix) : links_of(coarse[level - 1]->a);
 		if (level == 0)
-			coarsen<false>(a, to.p, to.a, to.rows);
+			coarsen<false>(a, to.p, to.a, to.rows, 1 / matrix.largest());
 		else
-			coarsen<true>(a, to.p, to.a, to.rows);
+			coarsen<true>(a, to.p, to.a, to.rows, 1 / matrix.largest());
 		invert_diagonal(to.a);
 	}
 }

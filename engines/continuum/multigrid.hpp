@@ -14,7 +14,9 @@ namespace graindrive::continuum {
 class PlainField {
 public:
 	PlainField() = default;
-	PlainField(int nx, int ny) : stride(std::size_t(2 * rounded_up((nx + 1) / 2)) + 2 * lanes), numbers(stride * (ny + 3) + lanes) {}
+	PlainField(int nx, int ny) : stride(std::size_t(2 * rounded_up((nx + 1) / 2)) + 2 * lanes), numbers(stride * (ny + 3) + lanes)
+	{
+	}
 	double* row(int y) { return numbers.data() + stride * (y + 1) + lanes; }
 	const double* row(int y) const { return numbers.data() + stride * (y + 1) + lanes; }
 
@@ -25,11 +27,11 @@ private:
 
 /// What the cells between coarse cells take of them. Row Y, place X: cells (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1).
 struct Interpolation {
-	PlainField west, east;                                          // on rows of coarse cells
-	PlainField south, north;                                        // on columns of coarse cells
-	PlainField south_west, south_east, north_west, north_east;      // in the middle of four
-	Field<double> takes;                                            // of the finer grid: 1 where the weights add up to 1, 0 where all are 0
-	Pack<double> gaps = {};                                         // how many open cells have no weights
+	PlainField west, east;                                      // on rows of coarse cells
+	PlainField south, north;                                    // on columns of coarse cells
+	PlainField south_west, south_east, north_west, north_east;  // in the middle of four
+	Field<double> takes;     // of the finer grid: 1 where the weights add up to 1, 0 where all are 0
+	Pack<double> gaps = {};  // how many open cells have no weights
 };
 
 /// Links of a nine-point operator; where the neighbours lie, see `FivePoint`.
@@ -50,9 +52,9 @@ public:
 private:
 	struct Coarse {
 		NinePoint a;
-		Interpolation p;         // from this grid to the finer one
-		PlainField plain;        // residuals or corrections in natural order
-		PlainField rows;         // links of one row in natural order, by kind
+		Interpolation p;   // from this grid to the finer one
+		PlainField plain;  // residuals or corrections in natural order
+		PlainField rows;   // links of one row in natural order, by kind
 		Field<double> f, u, rest;
 		void reshape(const SplitGrid& finer, const std::vector<Span>& finer_spans);
 	};

@@ -63,9 +63,13 @@ void run(const Case& c)
 	double mean = 0;
 	for (const double one : iterations) mean += one / double(iterations.size());
 	const double cells = double(c.n) * c.n;
-	std::printf("%-12s %4d %8.0e %8.0e %8.0e %6s %7.1f %10.3f %10.3f %10.3f %9.1f\n", c.solver.c_str(), c.n, c.ratio, c.cells_per_step, c.tolerance,
-		c.degree < 0 ? "zero" : c.degree == 0 ? "last" : c.degree == 1 ? "linear" : "square", mean, 1e3 * first, 1e3 * median(set_up),
-		1e3 * median(solve), 1e9 * (median(set_up) + 2 * median(solve)) / cells);
+	std::printf("%-12s %4d %8.0e %8.0e %8.0e %6s %7.1f %10.3f %10.3f %10.3f %9.1f\n", c.solver.c_str(), c.n, c.ratio,
+		c.cells_per_step, c.tolerance,
+		c.degree < 0    ? "zero"
+		: c.degree == 0 ? "last"
+		: c.degree == 1 ? "linear"
+						: "square",
+		mean, 1e3 * first, 1e3 * median(set_up), 1e3 * median(solve), 1e9 * (median(set_up) + 2 * median(solve)) / cells);
 	std::fflush(stdout);
 }
 
@@ -74,10 +78,12 @@ void run(const Case& c)
 int main(int argc, char** argv)
 {
 	if (argc > 1 && std::strcmp(argv[1], "help") == 0)
-		return std::fprintf(stderr, "usage: pressure_bench [all|SOLVER] [CELLS] [CELLS_PER_STEP] [TOLERANCE] [DEGREE] [STEPS] [RATIO]\n"), 2;
+		return std::fprintf(
+				   stderr, "usage: pressure_bench [all|SOLVER] [CELLS] [CELLS_PER_STEP] [TOLERANCE] [DEGREE] [STEPS] [RATIO]\n"),
+		       2;
 	const std::string wanted = argc > 1 ? argv[1] : "all";
-	std::printf("%-12s %4s %8s %8s %8s %6s %7s %10s %10s %10s %9s\n", "solver", "n", "ratio", "move", "tol", "guess", "iter", "first[ms]",
-		"update[ms]", "solve[ms]", "ns/cell");
+	std::printf("%-12s %4s %8s %8s %8s %6s %7s %10s %10s %10s %9s\n", "solver", "n", "ratio", "move", "tol", "guess", "iter",
+		"first[ms]", "update[ms]", "solve[ms]", "ns/cell");
 	const std::vector<std::string> solvers = wanted == "all" ? pressure_solvers() : std::vector<std::string>{ wanted };
 	const double ratio = argc > 7 ? std::atof(argv[7]) : 1000;
 	const int steps = argc > 6 ? std::atoi(argv[6]) : 9;
