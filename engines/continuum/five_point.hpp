@@ -31,6 +31,8 @@ public:
 
 	/// product = A u; the result is u A u.
 	double multiply(const Field<double>& u, Field<double>& product) const;
+	/// u = z + share u, then product = A u; the result is u A u.
+	double turn_and_multiply(const Field<double>& z, double share, Field<double>& u, Field<double>& product) const;
 	/// r = f - A u; the result is r r.
 	double residual(const Field<double>& f, const Field<double>& u, Field<double>& r) const;
 
@@ -40,6 +42,7 @@ public:
 private:
 	void load(const FaceCoefficients& b, double least);
 	void invert_diagonal();
+	void multiply_row(const Field<double>& u, Field<double>& product, int y, Pack<double>& sum) const;
 
 	SplitGrid shape;
 	Parts connected;

@@ -63,119 +63,142 @@ Lanes gather(const Neighbours& at, const Links& a, const double* u, int k)
 	return sum;
 }
 
-// Calls work(neighbours, k) for the packs of the cells with the parity of x in the rows `first`, `first` + 2, ...
-template <class Work>
-void for_colour(const Links& a, int parity, int first, Work&& work)
-{
-	for (int y = first; y < a.grid->ny; y += 2) {
-		const Neighbours at(*a.grid, y, parity);
-		const Span span = (*a.spans)[y];
-		for (int k = span.first; k < span.last; k += lanes) work(at, k);
-	}
-}
+bool has_row(const Links& a, int y) { return y >= 0 && y < a.grid->ny; }
 
-// Gauss-Seidel on one of four colours; neighbours of other kinds are known to be 0.
+Span span_or_none(const Links& a, int y) { return has_row(a, y) ? (*a.spans)[y] : Span{}; }
+
+// Gauss-Seidel on the cells of a row with one parity of x; neighbours of other kinds are known to be 0.
 template <int kinds>
-void relax(const Links& a, const double* f, double* u, int parity, int first)
+void relax(const Links& a, const double* f, double* u, int parity, int y)
 {
-	for_colour(a, parity, first, [&](const Neighbours& at, int k) {
+	if (!has_row(a, y)) return;
+	const Neighbours at(*a.grid, y, parity);
+	const Span span = (*a.spans)[y];
+	for (int k = span.first; k < span.last; k += lanes) {
 		const std::size_t i = at.here + k;
 		pack(u + i) = (pack(f + i) + gather<kinds>(at, a, u, k)) * pack(a.inverse + i);
-	});
+	}
 }
 
-// What changed the residual of a colour after it was relaxed: its neighbours of some kinds, which were 0 then.
+// What has changed the residual of these cells since they were relaxed: their neighbours of some kinds, which were 0 then.
 template <int kinds>
-void residual(const Links& a, const double* u, double* rest, int parity, int first)
+void residual(const Links& a, const double* u, double* rest, int parity, int y)
 {
-	for_colour(a, parity, first, [&](const Neighbours& at, int k) { pack(rest + at.here + k) = gather<kinds>(at, a, u, k); });
+	if (!has_row(a, y)) return;
+	const Neighbours at(*a.grid, y, parity);
+	const Span span = (*a.spans)[y];
+	for (int k = span.first; k < span.last; k += lanes) pack(rest + at.here + k) = gather<kinds>(at, a, u, k);
 }
 
-// Places of the colours: parity of x, parity of y. On the finest grid the first two are not linked, nor are the last two.
-// From u = 0, forwards; what is left is 0 on the last colour.
-void sweep_first(const Links& a, const double* f, double* u, double* rest)
-{
-	relax<none>(a, f, u, 0, 0);
-	if (!a.north_east) {
-		relax<none>(a, f, u, 1, 1);
-		relax<row | column>(a, f, u, 1, 0);
-		relax<row | column>(a, f, u, 0, 1);
-		residual<row | column>(a, u, rest, 0, 0);
-		residual<row | column>(a, u, rest, 1, 1);
-		return;
-	}
-	relax<diagonals>(a, f, u, 1, 1);
-	relax<row | column>(a, f, u, 1, 0);
-	relax<all>(a, f, u, 0, 1);
-	residual<all>(a, u, rest, 0, 0);
-	residual<row | column>(a, u, rest, 1, 1);
-	residual<diagonals>(a, u, rest, 1, 0);
-}
+// The right side of a coarse grid.
+struct CoarseSide {
+	const Interpolation& p;
+	PlainField& plain;  // room for rows in natural order
+	const NinePoint& a;
+	Field<double>& f;
+};
 
-// Backwards.
-void sweep_last(const Links& a, const double* f, double* u)
-{
-	if (!a.north_east) {
-		relax<row | column>(a, f, u, 0, 1);
-		relax<row | column>(a, f, u, 1, 0);
-		relax<row | column>(a, f, u, 1, 1);
-		relax<row | column>(a, f, u, 0, 0);
-		return;
-	}
-	relax<all>(a, f, u, 0, 1);
-	relax<all>(a, f, u, 1, 0);
-	relax<all>(a, f, u, 1, 1);
-	relax<all>(a, f, u, 0, 0);
-}
-
-Span both(const Span& a, const Span& b)
-{
-	if (a.first == a.last) return b;
-	if (b.first == b.last) return a;
-	return { std::min(a.first, b.first), std::max(a.last, b.last) };
-}
-
-Span span_or_none(const Links& a, int y) { return y < a.grid->ny ? (*a.spans)[y] : Span{}; }
-
-// f of the coarse grid = P^T rest, in natural order. `rows`: rest is not 0 on rows of coarse cells between them.
+// A row of the coarse right side P^T rest. `rows`: rest is not 0 between the coarse cells of a row.
 template <bool rows>
-void restrict_to(const Links& a, const Interpolation& p, const double* rest, PlainField& f, int coarse_ny)
+void restrict_row(const Links& a, const double* rest, CoarseSide& to, int y)
 {
-	for (int y = 0; y < coarse_ny; ++y) {
-		const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
-					 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
-		const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y),
-					 *south_east = p.south_east.row(y), *north_west = p.north_west.row(y - 1),
-					 *north_east = p.north_east.row(y - 1);
-		double* to = f.row(y);
-		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
-			Lanes sum =
-				pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
-									 (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
-			if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
-			pack(to + k) = sum;
-		}
+	if (y < 0 || y >= to.a.grid.ny) return;
+	const Interpolation& p = to.p;
+	const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
+				 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
+	const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y), *south_east = p.south_east.row(y),
+				 *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
+	double* sums = to.plain.row(y);
+	for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+		Lanes sum = pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
+									   (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
+		if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
+		pack(sums + k) = sum;
 	}
+	split_span(sums, to.a.spans[y], to.f.row(y, 0), to.f.row(y, 1));
 }
 
-// u += P correction, where the sweep that follows does not begin.
+// u += P correction in a row, but for the cells that the sweep relaxes first.
 template <bool rows>
-void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int coarse_ny)
+void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int y)
 {
-	for (int y = 0; y < coarse_ny; ++y) {
-		const double *c = correction.row(y), *above = correction.row(y + 1);
-		double *here = u + a.grid->offset(2 * y, 0), *beside = u + a.grid->offset(2 * y, 1),
-			   *middle = u + a.grid->offset(2 * y + 1, 1);
-		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+	if (!has_row(a, y)) return;
+	const Span span = (*a.spans)[y];
+	const int coarse = y / 2;
+	const double* c = correction.row(coarse);
+	if (y % 2 == 0) {
+		double *here = u + a.grid->offset(y, 0), *beside = u + a.grid->offset(y, 1);
+		for (int k = span.first; k < span.last; k += lanes) {
 			pack(here + k) += pack(c + k);
-			if constexpr (rows)
-				pack(beside + k) += pack(p.west.row(y) + k) * pack(c + k) + pack(p.east.row(y) + k) * pack(c + k + 1);
+			if constexpr (rows) pack(beside + k) += pack(p.west.row(coarse) + k) * pack(c + k) + pack(p.east.row(coarse) + k) * pack(c + k + 1);
 		}
-		const Span span = span_or_none(a, 2 * y + 1);
-		for (int k = span.first; k < span.last; k += lanes)
-			pack(middle + k) +=
-				(pack(p.south_west.row(y) + k) * pack(c + k) + pack(p.south_east.row(y) + k) * pack(c + k + 1)) +
-				(pack(p.north_west.row(y) + k) * pack(above + k) + pack(p.north_east.row(y) + k) * pack(above + k + 1));
+		return;
+	}
+	const double *above = correction.row(coarse + 1), *south_west = p.south_west.row(coarse), *south_east = p.south_east.row(coarse),
+				 *north_west = p.north_west.row(coarse), *north_east = p.north_east.row(coarse);
+	double* middle = u + a.grid->offset(y, 1);
+	for (int k = span.first; k < span.last; k += lanes)
+		pack(middle + k) += (pack(south_west + k) * pack(c + k) + pack(south_east + k) * pack(c + k + 1)) +
+							(pack(north_west + k) * pack(above + k) + pack(north_east + k) * pack(above + k + 1));
+}
+
+// Half a cycle goes through the rows once: each colour follows the one before it as closely as its neighbours allow, so that a row is
+// still in the cache when the last of them needs it.
+
+// From u = 0: relaxes forwards, and restricts what is left. On five points cells with even x + y come first, then the others, whose
+// residual is then 0.
+void descend_five(const Links& a, const double* f, double* u, double* rest, CoarseSide to)
+{
+	for (int y = -1; y <= a.grid->ny + 1; ++y) {
+		relax<none>(a, f, u, (y + 1) & 1, y + 1);
+		relax<row | column>(a, f, u, ~y & 1, y);
+		residual<row | column>(a, u, rest, (y - 1) & 1, y - 1);
+		if (y % 2 == 0) restrict_row<false>(a, rest, to, y / 2 - 1);
+	}
+}
+
+// Corrects, and relaxes backwards. Returns f u.
+double ascend_five(const Links& a, const double* f, double* u, const Interpolation& p, const PlainField& correction)
+{
+	Lanes product = {};
+	for (int y = -1; y <= a.grid->ny; ++y) {
+		correct<false>(a, p, correction, u, y + 1);
+		relax<row | column>(a, f, u, ~y & 1, y);
+		relax<row | column>(a, f, u, (y - 1) & 1, y - 1);
+		const Span span = span_or_none(a, y - 1);
+		for (int parity = 0; parity < 2; ++parity) {
+			const std::size_t i = a.grid->offset(y - 1, parity);
+			for (int k = span.first; k < span.last; k += lanes) product += pack(f + i + k) * pack(u + i + k);
+		}
+	}
+	return sum_of<double>(product);
+}
+
+// On nine points: coarse cells, middles of four, cells between two of a row, between two of a column, whose residual is then 0.
+void descend_nine(const Links& a, const double* f, double* u, double* rest, CoarseSide* to)
+{
+	for (int y = 0; y <= a.grid->ny + 6; y += 2) {
+		relax<none>(a, f, u, 0, y);
+		relax<diagonals>(a, f, u, 1, y - 1);
+		relax<row | column>(a, f, u, 1, y - 2);
+		relax<all>(a, f, u, 0, y - 3);
+		if (!to) continue;
+		residual<all>(a, u, rest, 0, y - 4);
+		residual<diagonals>(a, u, rest, 1, y - 4);
+		residual<row | column>(a, u, rest, 1, y - 5);
+		restrict_row<true>(a, rest, *to, y / 2 - 3);
+	}
+}
+
+void ascend_nine(const Links& a, const double* f, double* u, const Interpolation* p, const PlainField* correction)
+{
+	for (int y = 0; y <= a.grid->ny + 4; y += 2) {
+		for (const int corrected : { y - 1, y })
+			if (p) correct<true>(a, *p, *correction, u, corrected);
+		relax<all>(a, f, u, 0, y - 1);
+		relax<all>(a, f, u, 1, y - 2);
+		relax<all>(a, f, u, 1, y - 3);
+		relax<all>(a, f, u, 0, y - 4);
 	}
 }
 
@@ -454,35 +477,35 @@ void Multigrid::update(const FivePoint& matrix, bool new_shape)
 	}
 }
 
-void Multigrid::apply(const Field<double>& r, Field<double>& z)
+double Multigrid::apply(const Field<double>& r, Field<double>& z)
 {
 	const Links a = links_of(*finest);
-	sweep_first(a, r.data(), z.data(), rest.data());
-	if (!coarse.empty()) {
-		Coarse& next = *coarse.front();
-		restrict_to<false>(a, next.p, rest.data(), next.plain, next.a.grid.ny);
-		solve_coarse(0);
-		correct<false>(a, next.p, next.plain, z.data(), next.a.grid.ny);
+	if (coarse.empty()) {  // a single cell
+		z.clear();
+		return 0;
 	}
-	sweep_last(a, r.data(), z.data());
+	Coarse& next = *coarse.front();
+	descend_five(a, r.data(), z.data(), rest.data(), { next.p, next.plain, next.a, next.f });
+	solve_coarse(0);
+	return ascend_five(a, r.data(), z.data(), next.p, next.plain);
 }
 
-// Replaces the residual in `plain` by the correction.
+// From f to the correction in `plain`.
 void Multigrid::solve_coarse(std::size_t level)
 {
 	Coarse& here = *coarse[level];
 	const Links a = links_of(here.a);
-	const int ny = here.a.grid.ny;
-	for (int y = 0; y < ny; ++y) split_span(here.plain.row(y), here.a.spans[y], here.f.row(y, 0), here.f.row(y, 1));
-	sweep_first(a, here.f.data(), here.u.data(), here.rest.data());
 	if (level + 1 < coarse.size()) {
 		Coarse& next = *coarse[level + 1];
-		restrict_to<true>(a, next.p, here.rest.data(), next.plain, next.a.grid.ny);
+		CoarseSide to{ next.p, next.plain, next.a, next.f };
+		descend_nine(a, here.f.data(), here.u.data(), here.rest.data(), &to);
 		solve_coarse(level + 1);
-		correct<true>(a, next.p, next.plain, here.u.data(), next.a.grid.ny);
+		ascend_nine(a, here.f.data(), here.u.data(), &next.p, &next.plain);
+	} else {
+		descend_nine(a, here.f.data(), here.u.data(), here.rest.data(), nullptr);
+		ascend_nine(a, here.f.data(), here.u.data(), nullptr, nullptr);
 	}
-	sweep_last(a, here.f.data(), here.u.data());
-	for (int y = 0; y < ny; ++y) merge_span(here.u.row(y, 0), here.u.row(y, 1), here.a.spans[y], here.plain.row(y));
+	for (int y = 0; y < here.a.grid.ny; ++y) merge_span(here.u.row(y, 0), here.u.row(y, 1), here.a.spans[y], here.plain.row(y));
 }
 
 std::unique_ptr<Preconditioner> make_multigrid_preconditioner() { return std::make_unique<Multigrid>(); }

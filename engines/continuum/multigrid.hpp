@@ -46,7 +46,7 @@ class Multigrid : public Preconditioner {
 public:
 	std::string name() const override { return "multigrid"; }
 	void update(const FivePoint& matrix, bool new_shape) override;
-	void apply(const Field<double>& r, Field<double>& z) override;
+	double apply(const Field<double>& r, Field<double>& z) override;
 	int grids() const { return int(coarse.size()) + 1; }
 
 private:
