@@ -17,10 +17,8 @@ protected:
 		int done = 0;
 		double rz_before = 0;
 		while (done < limit) {
-			preconditioner->apply(r, z);
-			const double rz = dot(matrix.grid(), matrix.spans(), r, z);
-			turn_direction(done > 0 ? rz / rz_before : 0);
-			const double curvature = matrix.multiply(direction, product);
+			const double rz = preconditioner->apply(r, z);
+			const double curvature = matrix.turn_and_multiply(z, done > 0 ? rz / rz_before : 0, direction, product);
 			if (!(rz > 0 && curvature > 0)) return done + 1;  // rounding has eaten what was left
 			++done;
 			if (go(rz / curvature) <= target) break;
@@ -30,12 +28,6 @@ protected:
 	}
 
 private:
-	void turn_direction(double share)
-	{
-		for_packs(matrix.grid(), matrix.spans(),
-			[&](std::size_t i) { pack(direction.data() + i) = pack(z.data() + i) + share * pack(direction.data() + i); });
-	}
-
 	// Returns the new r r.
 	double go(double step)
 	{

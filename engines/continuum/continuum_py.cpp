@@ -38,12 +38,12 @@ FlowWords words_of(const py::dict& given)
 	words.list([&](const char* name, auto& value, const char*) {
 		names += names.empty() ? name : std::string(", ") + name;
 		if (!given.has_key(name)) return;
-		take(name, value, given[name]);
+		take(name, value, py::object(given[name]));
 		left.remove(py::object(name));
 	});
 	if (py::len(left) > 0)
 		throw std::invalid_argument(
-			"a flow does not know '" + std::string(py::extract<std::string>(py::str(left[0]))) + "'; it knows " + names);
+			"a flow does not know '" + std::string(py::extract<std::string>(py::str(py::object(left[0])))) + "'; it knows " + names);
 	return words;
 }
 
@@ -102,7 +102,8 @@ boost::shared_ptr<TwoPhaseFlow> flow_of(const py::object& fraction, const py::ob
 py::object construct(const py::tuple& arguments, const py::dict& keywords)
 {
 	if (py::len(arguments) != 3) throw std::invalid_argument("a flow is made as TwoPhaseFlow(fraction, solid, cells_x=…, …)");
-	return arguments[0].attr("__init__")(arguments[1], arguments[2], keywords);
+	const py::object self(arguments[0]), fraction(arguments[1]), solid(arguments[2]);
+	return self.attr("__init__")(fraction, solid, keywords);
 }
 
 np::ndarray velocity(const TwoPhaseFlow& flow)

@@ -1,10 +1,12 @@
 /// What coefficients are refused, and how.
 #include "engines/continuum/face_coefficients.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "engines/continuum/split_grid.hpp"
 #include "engines/geometry/refuse.hpp"
 
 namespace graindrive::continuum {
@@ -24,23 +26,28 @@ void check_sizes(const FaceCoefficients& b)
 		"make their array fit the grid");
 }
 
-// The largest of the numbers; negative if one of them is not a finite number >= 0. Eight at a time, since it is done in every step.
+// The largest of the numbers; negative if one of them is not a finite number >= 0.
 double largest_or_wrong(const std::vector<double>& numbers)
 {
-	double largest[8] = {}, wrong[8] = {};
-	const std::size_t whole = numbers.size() / 8 * 8;
-	for (std::size_t i = 0; i < numbers.size(); i += i < whole ? 8 : 1)
-		for (std::size_t lane = 0; lane < (i < whole ? 8 : 1); ++lane) {
-			const double b = numbers[i + lane];
-			largest[lane] = b > largest[lane] ? b : largest[lane];
-			wrong[lane] = b >= 0 && b <= std::numeric_limits<double>::max() ? wrong[lane] : 1;
-		}
-	double most = 0;
-	for (int lane = 0; lane < 8; ++lane) {
-		if (wrong[lane] > 0) return -1;
-		most = std::max(most, largest[lane]);
+	const Pack<double> zero = {};
+	Pack<double> largest = zero, wrong = zero;
+	std::size_t i = 0;
+	for (; i + lanes <= numbers.size(); i += lanes) {
+		const Pack<double> b = pack(numbers.data() + i);
+		largest = b > largest ? b : largest;
+		wrong = b >= zero ? wrong : zero + 1;
 	}
-	return most;
+	double most = 0;
+	bool bad = false;
+	for (int lane = 0; lane < lanes; ++lane) {
+		most = std::max(most, largest[lane]);
+		bad |= wrong[lane] > 0;
+	}
+	for (; i < numbers.size(); ++i) {
+		most = std::max(most, numbers[i]);
+		bad |= !(numbers[i] >= 0);
+	}
+	return bad || most > std::numeric_limits<double>::max() ? -1 : most;
 }
 
 std::string place(const char* kind, int i, int j)
@@ -57,11 +64,13 @@ void refuse_wrong(const std::vector<double>& numbers, const char* kind, int per_
 
 void refuse_open_boundary(const FaceCoefficients& b)
 {
-	const std::string rule = "coefficients on the boundary of the box must be 0";
+	const auto check = [](double value, const char* kind, int i, int j) {
+		if (value != 0) require(false, "coefficients on the boundary of the box must be 0", value, "close " + place(kind, i, j));
+	};
 	for (int j = 0; j < b.ny; ++j)
-		for (const int i : { 0, b.nx }) require(b.left(i, j) == 0, rule, b.left(i, j), "close " + place("x", i, j));
+		for (const int i : { 0, b.nx }) check(b.left(i, j), "x", i, j);
 	for (int i = 0; i < b.nx; ++i)
-		for (const int j : { 0, b.ny }) require(b.below(i, j) == 0, rule, b.below(i, j), "close " + place("y", i, j));
+		for (const int j : { 0, b.ny }) check(b.below(i, j), "y", i, j);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@ namespace graindrive::continuum {
 
 bool FivePoint::update(const FaceCoefficients& b)
 {
-	const double least = closed_below * checked_largest(b);
+	largest_link = checked_largest(b);
+	const double least = closed_below * largest_link;
 	const bool new_shape = connected.update(b, least);
 	if (new_shape) {
 		shape.nx = b.nx, shape.ny = b.ny;
@@ -49,22 +50,19 @@ void FivePoint::invert_diagonal()
 
 namespace {
 
-// Calls work(place, A u there) for all packs.
+// Calls work(place, A u there) for the packs of a row.
 template <class Work>
-void for_products(const FivePoint& a, const Field<double>& field, Work&& work)
+void for_products(const FivePoint& a, const Field<double>& field, int y, Work&& work)
 {
 	const double *e = a.east.data(), *n = a.north.data(), *u = field.data();
-	for (int y = 0; y < a.grid().ny; ++y)
-		for (int parity = 0; parity < 2; ++parity) {
-			const NeighbourRows at(a.grid(), y, parity);
-			for (int k = a.spans()[y].first; k < a.spans()[y].last; k += lanes) {
-				const Pack<double> here = pack(u + at.here + k);
-				work(at.here + k, pack(e + at.here + k) * (here - pack(u + at.east + k)) +
-									  pack(e + at.west + k) * (here - pack(u + at.west + k)) +
-									  (pack(n + at.here + k) * (here - pack(u + at.north + k)) +
-										  pack(n + at.south + k) * (here - pack(u + at.south + k))));
-			}
+	for (int parity = 0; parity < 2; ++parity) {
+		const NeighbourRows at(a.grid(), y, parity);
+		for (int k = a.spans()[y].first; k < a.spans()[y].last; k += lanes) {
+			const Pack<double> here = pack(u + at.here + k);
+			work(at.here + k, (pack(e + at.here + k) * (here - pack(u + at.east + k)) + pack(e + at.west + k) * (here - pack(u + at.west + k))) +
+								  (pack(n + at.here + k) * (here - pack(u + at.north + k)) + pack(n + at.south + k) * (here - pack(u + at.south + k))));
 		}
+	}
 }
 
 }  // namespace
@@ -72,21 +70,40 @@ void for_products(const FivePoint& a, const Field<double>& field, Work&& work)
 double FivePoint::multiply(const Field<double>& u, Field<double>& product) const
 {
 	Pack<double> sum = {};
-	for_products(*this, u, [&](std::size_t i, const Pack<double>& value) {
-		pack(product.data() + i) = value;
-		sum += value * pack(u.data() + i);
-	});
+	for (int y = 0; y < shape.ny; ++y) multiply_row(u, product, y, sum);
 	return sum_of<double>(sum);
+}
+
+double FivePoint::turn_and_multiply(const Field<double>& z, double share, Field<double>& u, Field<double>& product) const
+{
+	Pack<double> sum = {};
+	for (int y = 0; y <= shape.ny; ++y) {  // a row is turned before its lower neighbour is multiplied
+		if (y < shape.ny)
+			for_row(shape, spans(), y, [&](std::size_t i) { pack(u.data() + i) = pack(z.data() + i) + share * pack(u.data() + i); });
+		if (y > 0) multiply_row(u, product, y - 1, sum);
+	}
+	return sum_of<double>(sum);
+}
+
+void FivePoint::multiply_row(const Field<double>& u, Field<double>& product, int y, Pack<double>& sum) const
+{
+	Pack<double> more = {};
+	for_products(*this, u, y, [&](std::size_t i, const Pack<double>& value) {
+		pack(product.data() + i) = value;
+		more += value * pack(u.data() + i);
+	});
+	sum += more;
 }
 
 double FivePoint::residual(const Field<double>& f, const Field<double>& u, Field<double>& r) const
 {
 	Pack<double> sum = {};
-	for_products(*this, u, [&](std::size_t i, const Pack<double>& value) {
-		const Pack<double> rest = pack(f.data() + i) - value;
-		pack(r.data() + i) = rest;
-		sum += rest * rest;
-	});
+	for (int y = 0; y < shape.ny; ++y)
+		for_products(*this, u, y, [&](std::size_t i, const Pack<double>& value) {
+			const Pack<double> rest = pack(f.data() + i) - value;
+			pack(r.data() + i) = rest;
+			sum += rest * rest;
+		});
 	return sum_of<double>(sum);
 }
 

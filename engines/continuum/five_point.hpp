@@ -27,9 +27,12 @@ public:
 	const Parts& parts() const { return connected; }
 	const std::vector<Span>& spans() const { return connected.spans(); }
 	double spacing() const { return width; }
+	double largest() const { return largest_link; }
 
 	/// product = A u; the result is u A u.
 	double multiply(const Field<double>& u, Field<double>& product) const;
+	/// u = z + share u, then product = A u; the result is u A u.
+	double turn_and_multiply(const Field<double>& z, double share, Field<double>& u, Field<double>& product) const;
 	/// r = f - A u; the result is r r.
 	double residual(const Field<double>& f, const Field<double>& u, Field<double>& r) const;
 
@@ -39,10 +42,11 @@ public:
 private:
 	void load(const FaceCoefficients& b, double least);
 	void invert_diagonal();
+	void multiply_row(const Field<double>& u, Field<double>& product, int y, Pack<double>& sum) const;
 
 	SplitGrid shape;
 	Parts connected;
-	double width = 1;
+	double width = 1, largest_link = 0;
 	std::vector<double> row;
 };
 

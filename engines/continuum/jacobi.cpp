@@ -8,10 +8,11 @@ class Jacobi : public Preconditioner {
 public:
 	std::string name() const override { return "jacobi"; }
 	void update(const FivePoint& present, bool) override { matrix = &present; }
-	void apply(const Field<double>& r, Field<double>& z) override
+	double apply(const Field<double>& r, Field<double>& z) override
 	{
 		for_packs(matrix->grid(), matrix->spans(),
 			[&](std::size_t i) { pack(z.data() + i) = pack(matrix->inverse_diagonal.data() + i) * pack(r.data() + i); });
+		return dot(matrix->grid(), matrix->spans(), r, z);
 	}
 
 private:

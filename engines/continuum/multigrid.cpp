@@ -63,119 +63,142 @@ Lanes gather(const Neighbours& at, const Links& a, const double* u, int k)
 	return sum;
 }
 
-// Calls work(neighbours, k) for the packs of the cells with the parity of x in the rows `first`, `first` + 2, ...
-template <class Work>
-void for_colour(const Links& a, int parity, int first, Work&& work)
-{
-	for (int y = first; y < a.grid->ny; y += 2) {
-		const Neighbours at(*a.grid, y, parity);
-		const Span span = (*a.spans)[y];
-		for (int k = span.first; k < span.last; k += lanes) work(at, k);
-	}
-}
+bool has_row(const Links& a, int y) { return y >= 0 && y < a.grid->ny; }
 
-// Gauss-Seidel on one of four colours; neighbours of other kinds are known to be 0.
+Span span_or_none(const Links& a, int y) { return has_row(a, y) ? (*a.spans)[y] : Span{}; }
+
+// Gauss-Seidel on the cells of a row with one parity of x; neighbours of other kinds are known to be 0.
 template <int kinds>
-void relax(const Links& a, const double* f, double* u, int parity, int first)
+void relax(const Links& a, const double* f, double* u, int parity, int y)
 {
-	for_colour(a, parity, first, [&](const Neighbours& at, int k) {
+	if (!has_row(a, y)) return;
+	const Neighbours at(*a.grid, y, parity);
+	const Span span = (*a.spans)[y];
+	for (int k = span.first; k < span.last; k += lanes) {
 		const std::size_t i = at.here + k;
 		pack(u + i) = (pack(f + i) + gather<kinds>(at, a, u, k)) * pack(a.inverse + i);
-	});
+	}
 }
 
-// What changed the residual of a colour after it was relaxed: its neighbours of some kinds, which were 0 then.
+// What has changed the residual of these cells since they were relaxed: their neighbours of some kinds, which were 0 then.
 template <int kinds>
-void residual(const Links& a, const double* u, double* rest, int parity, int first)
+void residual(const Links& a, const double* u, double* rest, int parity, int y)
 {
-	for_colour(a, parity, first, [&](const Neighbours& at, int k) { pack(rest + at.here + k) = gather<kinds>(at, a, u, k); });
+	if (!has_row(a, y)) return;
+	const Neighbours at(*a.grid, y, parity);
+	const Span span = (*a.spans)[y];
+	for (int k = span.first; k < span.last; k += lanes) pack(rest + at.here + k) = gather<kinds>(at, a, u, k);
 }
 
-// Places of the colours: parity of x, parity of y. On the finest grid the first two are not linked, nor are the last two.
-// From u = 0, forwards; what is left is 0 on the last colour.
-void sweep_first(const Links& a, const double* f, double* u, double* rest)
-{
-	relax<none>(a, f, u, 0, 0);
-	if (!a.north_east) {
-		relax<none>(a, f, u, 1, 1);
-		relax<row | column>(a, f, u, 1, 0);
-		relax<row | column>(a, f, u, 0, 1);
-		residual<row | column>(a, u, rest, 0, 0);
-		residual<row | column>(a, u, rest, 1, 1);
-		return;
-	}
-	relax<diagonals>(a, f, u, 1, 1);
-	relax<row | column>(a, f, u, 1, 0);
-	relax<all>(a, f, u, 0, 1);
-	residual<all>(a, u, rest, 0, 0);
-	residual<row | column>(a, u, rest, 1, 1);
-	residual<diagonals>(a, u, rest, 1, 0);
-}
+// The right side of a coarse grid.
+struct CoarseSide {
+	const Interpolation& p;
+	PlainField& plain;  // room for rows in natural order
+	const NinePoint& a;
+	Field<double>& f;
+};
 
-// Backwards.
-void sweep_last(const Links& a, const double* f, double* u)
-{
-	if (!a.north_east) {
-		relax<row | column>(a, f, u, 0, 1);
-		relax<row | column>(a, f, u, 1, 0);
-		relax<row | column>(a, f, u, 1, 1);
-		relax<row | column>(a, f, u, 0, 0);
-		return;
-	}
-	relax<all>(a, f, u, 0, 1);
-	relax<all>(a, f, u, 1, 0);
-	relax<all>(a, f, u, 1, 1);
-	relax<all>(a, f, u, 0, 0);
-}
-
-Span both(const Span& a, const Span& b)
-{
-	if (a.first == a.last) return b;
-	if (b.first == b.last) return a;
-	return { std::min(a.first, b.first), std::max(a.last, b.last) };
-}
-
-Span span_or_none(const Links& a, int y) { return y < a.grid->ny ? (*a.spans)[y] : Span{}; }
-
-// f of the coarse grid = P^T rest, in natural order. `rows`: rest is not 0 on rows of coarse cells between them.
+// A row of the coarse right side P^T rest. `rows`: rest is not 0 between the coarse cells of a row.
 template <bool rows>
-void restrict_to(const Links& a, const Interpolation& p, const double* rest, PlainField& f, int coarse_ny)
+void restrict_row(const Links& a, const double* rest, CoarseSide& to, int y)
 {
-	for (int y = 0; y < coarse_ny; ++y) {
-		const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
-					 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
-		const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y),
-					 *south_east = p.south_east.row(y), *north_west = p.north_west.row(y - 1),
-					 *north_east = p.north_east.row(y - 1);
-		double* to = f.row(y);
-		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
-			Lanes sum =
-				pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
-									 (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
-			if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
-			pack(to + k) = sum;
-		}
+	if (y < 0 || y >= to.a.grid.ny) return;
+	const Interpolation& p = to.p;
+	const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
+				 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
+	const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y), *south_east = p.south_east.row(y),
+				 *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
+	double* sums = to.plain.row(y);
+	for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+		Lanes sum = pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
+									   (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
+		if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
+		pack(sums + k) = sum;
 	}
+	split_span(sums, to.a.spans[y], to.f.row(y, 0), to.f.row(y, 1));
 }
 
-// u += P correction, where the sweep that follows does not begin.
+// u += P correction in a row, but for the cells that the sweep relaxes first.
 template <bool rows>
-void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int coarse_ny)
+void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int y)
 {
-	for (int y = 0; y < coarse_ny; ++y) {
-		const double *c = correction.row(y), *above = correction.row(y + 1);
-		double *here = u + a.grid->offset(2 * y, 0), *beside = u + a.grid->offset(2 * y, 1),
-			   *middle = u + a.grid->offset(2 * y + 1, 1);
-		for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
+	if (!has_row(a, y)) return;
+	const Span span = (*a.spans)[y];
+	const int coarse = y / 2;
+	const double* c = correction.row(coarse);
+	if (y % 2 == 0) {
+		double *here = u + a.grid->offset(y, 0), *beside = u + a.grid->offset(y, 1);
+		for (int k = span.first; k < span.last; k += lanes) {
 			pack(here + k) += pack(c + k);
-			if constexpr (rows)
-				pack(beside + k) += pack(p.west.row(y) + k) * pack(c + k) + pack(p.east.row(y) + k) * pack(c + k + 1);
+			if constexpr (rows) pack(beside + k) += pack(p.west.row(coarse) + k) * pack(c + k) + pack(p.east.row(coarse) + k) * pack(c + k + 1);
 		}
-		const Span span = span_or_none(a, 2 * y + 1);
-		for (int k = span.first; k < span.last; k += lanes)
-			pack(middle + k) +=
-				(pack(p.south_west.row(y) + k) * pack(c + k) + pack(p.south_east.row(y) + k) * pack(c + k + 1)) +
-				(pack(p.north_west.row(y) + k) * pack(above + k) + pack(p.north_east.row(y) + k) * pack(above + k + 1));
+		return;
+	}
+	const double *above = correction.row(coarse + 1), *south_west = p.south_west.row(coarse), *south_east = p.south_east.row(coarse),
+				 *north_west = p.north_west.row(coarse), *north_east = p.north_east.row(coarse);
+	double* middle = u + a.grid->offset(y, 1);
+	for (int k = span.first; k < span.last; k += lanes)
+		pack(middle + k) += (pack(south_west + k) * pack(c + k) + pack(south_east + k) * pack(c + k + 1)) +
+							(pack(north_west + k) * pack(above + k) + pack(north_east + k) * pack(above + k + 1));
+}
+
+// Half a cycle goes through the rows once: each colour follows the one before it as closely as its neighbours allow, so that a row is
+// still in the cache when the last of them needs it.
+
+// From u = 0: relaxes forwards, and restricts what is left. On five points cells with even x + y come first, then the others, whose
+// residual is then 0.
+void descend_five(const Links& a, const double* f, double* u, double* rest, CoarseSide to)
+{
+	for (int y = -1; y <= a.grid->ny + 1; ++y) {
+		relax<none>(a, f, u, (y + 1) & 1, y + 1);
+		relax<row | column>(a, f, u, ~y & 1, y);
+		residual<row | column>(a, u, rest, (y - 1) & 1, y - 1);
+		if (y % 2 == 0) restrict_row<false>(a, rest, to, y / 2 - 1);
+	}
+}
+
+// Corrects, and relaxes backwards. Returns f u.
+double ascend_five(const Links& a, const double* f, double* u, const Interpolation& p, const PlainField& correction)
+{
+	Lanes product = {};
+	for (int y = -1; y <= a.grid->ny; ++y) {
+		correct<false>(a, p, correction, u, y + 1);
+		relax<row | column>(a, f, u, ~y & 1, y);
+		relax<row | column>(a, f, u, (y - 1) & 1, y - 1);
+		const Span span = span_or_none(a, y - 1);
+		for (int parity = 0; parity < 2; ++parity) {
+			const std::size_t i = a.grid->offset(y - 1, parity);
+			for (int k = span.first; k < span.last; k += lanes) product += pack(f + i + k) * pack(u + i + k);
+		}
+	}
+	return sum_of<double>(product);
+}
+
+// On nine points: coarse cells, middles of four, cells between two of a row, between two of a column, whose residual is then 0.
+void descend_nine(const Links& a, const double* f, double* u, double* rest, CoarseSide* to)
+{
+	for (int y = 0; y <= a.grid->ny + 6; y += 2) {
+		relax<none>(a, f, u, 0, y);
+		relax<diagonals>(a, f, u, 1, y - 1);
+		relax<row | column>(a, f, u, 1, y - 2);
+		relax<all>(a, f, u, 0, y - 3);
+		if (!to) continue;
+		residual<all>(a, u, rest, 0, y - 4);
+		residual<diagonals>(a, u, rest, 1, y - 4);
+		residual<row | column>(a, u, rest, 1, y - 5);
+		restrict_row<true>(a, rest, *to, y / 2 - 3);
+	}
+}
+
+void ascend_nine(const Links& a, const double* f, double* u, const Interpolation* p, const PlainField* correction)
+{
+	for (int y = 0; y <= a.grid->ny + 4; y += 2) {
+		for (const int corrected : { y - 1, y })
+			if (p) correct<true>(a, *p, *correction, u, corrected);
+		relax<all>(a, f, u, 0, y - 1);
+		relax<all>(a, f, u, 1, y - 2);
+		relax<all>(a, f, u, 1, y - 3);
+		relax<all>(a, f, u, 0, y - 4);
 	}
 }
 
@@ -192,6 +215,15 @@ Lanes positive(const Lanes& a)
 	return a > zero ? a : zero;
 }
 
+// Marks which cells take anything of coarse cells, and counts the open cells that do not.
+inline void mark(const Links& a, std::size_t place, const Lanes& whole, Interpolation& p)
+{
+	const Lanes zero = {}, one = zero + 1;
+	const Lanes takes = whole > zero ? one : zero;
+	pack(p.takes.data() + place) = takes;
+	p.gaps += pack(a.inverse + place) > zero ? one - takes : zero;
+}
+
 // Between two coarse cells each counts by its links (of three kinds on a nine-point grid) towards the cell in between.
 template <bool nine>
 void interpolate_rows(const Links& a, Interpolation& p, int y)
@@ -204,6 +236,7 @@ void interpolate_rows(const Links& a, Interpolation& p, int y)
 			west = positive(west + pack(a.north_west + at.here + k) + pack(a.north_east + at.south_west + k));
 			east = positive(east + pack(a.north_east + at.here + k) + pack(a.north_west + at.south_east + k));
 		}
+		mark(a, at.here + k, west + east, p);
 		pack(p.west.row(y) + k) = share(west, west + east);
 		pack(p.east.row(y) + k) = share(east, west + east);
 	}
@@ -220,6 +253,7 @@ void interpolate_columns(const Links& a, Interpolation& p, int y)
 			south = positive(south + pack(a.north_east + at.south_west + k) + pack(a.north_west + at.south_east + k));
 			north = positive(north + pack(a.north_east + at.here + k) + pack(a.north_west + at.here + k));
 		}
+		mark(a, at.here + k, south + north, p);
 		pack(p.south.row(y) + k) = share(south, south + north);
 		pack(p.north.row(y) + k) = share(north, south + north);
 	}
@@ -245,6 +279,7 @@ void interpolate_middles(const Links& a, Interpolation& p, int y)
 			ne = positive(ne + pack(a.north_east + at.here + k));
 		}
 		const Lanes whole = (sw + se) + (nw + ne);
+		mark(a, at.here + k, whole, p);
 		pack(p.south_west.row(y) + k) = share(sw, whole);
 		pack(p.south_east.row(y) + k) = share(se, whole);
 		pack(p.north_west.row(y) + k) = share(nw, whole);
@@ -255,6 +290,7 @@ void interpolate_middles(const Links& a, Interpolation& p, int y)
 template <bool nine>
 void interpolate(const Links& a, Interpolation& p, int coarse_ny)
 {
+	p.gaps = Lanes{};
 	for (int y = 0; y < coarse_ny; ++y) interpolate_rows<nine>(a, p, y);
 	for (int y = 0; y < coarse_ny; ++y) {
 		interpolate_columns<nine>(a, p, y);
@@ -280,6 +316,8 @@ struct Around {
 		return pack(links + place(dx, dy));
 	}
 
+	Lanes takes(int dx, int dy) const { return pack(p.takes.data() + place(dx, dy)); }
+
 	// What (dx, dy) takes of the coarse cell (k, y) + (cx, cy).
 	Lanes weight(int dx, int dy, int cx, int cy) const
 	{
@@ -295,8 +333,9 @@ struct Around {
 	}
 };
 
-// A times the column of P that belongs to the coarse cells, at (dx, dy).
-template <bool nine>
+// A times the column of P that belongs to the coarse cells, at (dx, dy). Links to cells that take nothing of coarse cells are left out
+// (`gaps`: there are such cells): they would leave the coarse matrix with too small a diagonal, and so indefinite.
+template <bool nine, bool gaps>
 inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int dx, int dy)
 {
 	const Lanes here = cells.weight(dx, dy, 0, 0);
@@ -309,13 +348,17 @@ inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int 
 			const int ex = dx + ax, ey = dy + ay;
 			const bool both_outside = (dx < -1 || dx > 1 || dy < -1 || dy > 1) && (ex < -1 || ex > 1 || ey < -1 || ey > 1);
 			if (both_outside) continue;
-			sum += cells.link(dx, dy, ax, ay) * (here - cells.weight(ex, ey, 0, 0));
+			const Lanes there = cells.weight(ex, ey, 0, 0);
+			if constexpr (gaps)
+				sum += cells.link(dx, dy, ax, ay) * (here * cells.takes(ex, ey) - there * cells.takes(dx, dy));
+			else
+				sum += cells.link(dx, dy, ax, ay) * (here - there);
 		}
 	return sum;
 }
 
 // The links of the coarse cells to the east, north, north-east and north-west: -(column of P of the neighbour)^T A (column of P).
-template <bool nine>
+template <bool nine, bool gaps>
 inline __attribute__((always_inline)) void coarse_links(
 	const Around& cells, Lanes& east, Lanes& north, Lanes& north_east, Lanes& north_west)
 {
@@ -326,7 +369,7 @@ inline __attribute__((always_inline)) void coarse_links(
 #pragma GCC unroll 5
 		for (int dx = -2; dx <= 2; ++dx) {
 			if (dy < 1 && dx < 1) continue;
-			const Lanes product = product_at<nine>(cells, dx, dy);
+			const Lanes product = product_at<nine, gaps>(cells, dx, dy);
 			if (dx > 0 && dy < 2) east -= cells.weight(dx, dy, 1, 0) * product;
 			if (dx > -2 && dx < 2 && dy > 0) north -= cells.weight(dx, dy, 0, 1) * product;
 			if (dx > 0 && dy > 0) north_east -= cells.weight(dx, dy, 1, 1) * product;
@@ -334,22 +377,38 @@ inline __attribute__((always_inline)) void coarse_links(
 		}
 }
 
-template <bool nine>
-void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField (&row_of)[4])
+// `closed`: what counts as the inverse diagonal of a closed cell.
+template <bool nine, bool gaps>
+void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField& rows, double closed)
 {
-	Field<double>* const links[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west };
+	Field<double>* const fields[] = { &coarse.east, &coarse.north, &coarse.north_east, &coarse.north_west,
+		&coarse.inverse_diagonal };
 	for (int y = 0; y < coarse.grid.ny; ++y) {
-		const Span span = (*a.spans)[2 * y];
-		if (span.first == span.last) continue;
+		const Span span = (*a.spans)[2 * y], coarse_span = coarse.spans[y];
+		const double* inverse = a.inverse + a.grid->offset(2 * y, 0);
 		for (int k = span.first; k < span.last; k += lanes) {
 			Lanes link[4];
-			coarse_links<nine>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
-			for (int n = 0; n < 4; ++n) pack(row_of[n].row(0) + k) = link[n];
+			coarse_links<nine, gaps>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
+			for (int n = 0; n < 4; ++n) pack(rows.row(n) + k) = link[n];
+			const Lanes own = pack(inverse + k), zero = {};
+			pack(rows.row(4) + k) = own > zero ? own : zero + closed;  // a closed cell may stand for open ones beside it
 		}
-		for (int n = 0; n < 4; ++n) split_span(row_of[n].row(0), coarse.spans[y], links[n]->row(y, 0), links[n]->row(y, 1));
-		split_span(a.inverse + a.grid->offset(2 * y, 0), coarse.spans[y], coarse.inverse_diagonal.row(y, 0),
-			coarse.inverse_diagonal.row(y, 1));
+		for (int n = 0; n < 5; ++n) {
+			std::fill(rows.row(n) + 2 * coarse_span.first, rows.row(n) + span.first, 0);
+			std::fill(rows.row(n) + span.last, rows.row(n) + 2 * coarse_span.last, 0);
+			split_span(rows.row(n), coarse_span, fields[n]->row(y, 0), fields[n]->row(y, 1));
+		}
 	}
+}
+
+template <bool nine>
+void coarsen(const Links& a, Interpolation& p, NinePoint& coarse, PlainField& rows, double closed)
+{
+	interpolate<nine>(a, p, coarse.grid.ny);
+	if (sum_of<double>(p.gaps) > 0)
+		link_coarse<nine, true>(a, p, coarse, rows, closed);
+	else
+		link_coarse<nine, false>(a, p, coarse, rows, closed);
 }
 
 // A coarse cell is linked to nothing if its diagonal is rounding beside the finer diagonal: then a part has shrunk to that cell.
@@ -388,7 +447,9 @@ void Multigrid::Coarse::reshape(const SplitGrid& finer, const std::vector<Span>&
 	for (PlainField* field :
 		{ &p.west, &p.east, &p.south, &p.north, &p.south_west, &p.south_east, &p.north_west, &p.north_east, &plain })
 		*field = PlainField(nx, ny);
-	for (PlainField& row : rows) row = PlainField(nx, 1);
+	rows = PlainField(nx, 5);
+	p.takes = Field<double>(finer);
+	for (int y = 0; y < finer.ny; y += 2) std::fill_n(p.takes.row(y, 0), nx, 1);
 }
 
 void Multigrid::update(const FivePoint& matrix, bool new_shape)
@@ -408,46 +469,43 @@ void Multigrid::update(const FivePoint& matrix, bool new_shape)
 	for (std::size_t level = 0; level < coarse.size(); ++level) {
 		Coarse& to = *coarse[level];
 		const Links a = level == 0 ? links_of(matrix) : links_of(coarse[level - 1]->a);
-		if (level == 0) {
-			interpolate<false>(a, to.p, to.a.grid.ny);
-			link_coarse<false>(a, to.p, to.a, to.rows);
-		} else {
-			interpolate<true>(a, to.p, to.a.grid.ny);
-			link_coarse<true>(a, to.p, to.a, to.rows);
-		}
+		if (level == 0)
+			coarsen<false>(a, to.p, to.a, to.rows, 1 / matrix.largest());
+		else
+			coarsen<true>(a, to.p, to.a, to.rows, 1 / matrix.largest());
 		invert_diagonal(to.a);
 	}
 }
 
-void Multigrid::apply(const Field<double>& r, Field<double>& z)
+double Multigrid::apply(const Field<double>& r, Field<double>& z)
 {
 	const Links a = links_of(*finest);
-	sweep_first(a, r.data(), z.data(), rest.data());
-	if (!coarse.empty()) {
-		Coarse& next = *coarse.front();
-		restrict_to<false>(a, next.p, rest.data(), next.plain, next.a.grid.ny);
-		solve_coarse(0);
-		correct<false>(a, next.p, next.plain, z.data(), next.a.grid.ny);
+	if (coarse.empty()) {  // a single cell
+		z.clear();
+		return 0;
 	}
-	sweep_last(a, r.data(), z.data());
+	Coarse& next = *coarse.front();
+	descend_five(a, r.data(), z.data(), rest.data(), { next.p, next.plain, next.a, next.f });
+	solve_coarse(0);
+	return ascend_five(a, r.data(), z.data(), next.p, next.plain);
 }
 
-// Replaces the residual in `plain` by the correction.
+// From f to the correction in `plain`.
 void Multigrid::solve_coarse(std::size_t level)
 {
 	Coarse& here = *coarse[level];
 	const Links a = links_of(here.a);
-	const int ny = here.a.grid.ny;
-	for (int y = 0; y < ny; ++y) split_span(here.plain.row(y), here.a.spans[y], here.f.row(y, 0), here.f.row(y, 1));
-	sweep_first(a, here.f.data(), here.u.data(), here.rest.data());
 	if (level + 1 < coarse.size()) {
 		Coarse& next = *coarse[level + 1];
-		restrict_to<true>(a, next.p, here.rest.data(), next.plain, next.a.grid.ny);
+		CoarseSide to{ next.p, next.plain, next.a, next.f };
+		descend_nine(a, here.f.data(), here.u.data(), here.rest.data(), &to);
 		solve_coarse(level + 1);
-		correct<true>(a, next.p, next.plain, here.u.data(), next.a.grid.ny);
+		ascend_nine(a, here.f.data(), here.u.data(), &next.p, &next.plain);
+	} else {
+		descend_nine(a, here.f.data(), here.u.data(), here.rest.data(), nullptr);
+		ascend_nine(a, here.f.data(), here.u.data(), nullptr, nullptr);
 	}
-	sweep_last(a, here.f.data(), here.u.data());
-	for (int y = 0; y < ny; ++y) merge_span(here.u.row(y, 0), here.u.row(y, 1), here.a.spans[y], here.plain.row(y));
+	for (int y = 0; y < here.a.grid.ny; ++y) merge_span(here.u.row(y, 0), here.u.row(y, 1), here.a.spans[y], here.plain.row(y));
 }
 
 std::unique_ptr<Preconditioner> make_multigrid_preconditioner() { return std::make_unique<Multigrid>(); }

@@ -30,6 +30,8 @@ struct Interpolation {
 	PlainField west, east;                                      // on rows of coarse cells
 	PlainField south, north;                                    // on columns of coarse cells
 	PlainField south_west, south_east, north_west, north_east;  // in the middle of four
+	Field<double> takes;     // of the finer grid: 1 where the weights add up to 1, 0 where all are 0
+	Pack<double> gaps = {};  // how many open cells have no weights
 };
 
 /// Links of a nine-point operator; where the neighbours lie, see `FivePoint`.
@@ -44,15 +46,15 @@ class Multigrid : public Preconditioner {
 public:
 	std::string name() const override { return "multigrid"; }
 	void update(const FivePoint& matrix, bool new_shape) override;
-	void apply(const Field<double>& r, Field<double>& z) override;
+	double apply(const Field<double>& r, Field<double>& z) override;
 	int grids() const { return int(coarse.size()) + 1; }
 
 private:
 	struct Coarse {
 		NinePoint a;
-		Interpolation p;     // from this grid to the finer one
-		PlainField plain;    // residuals or corrections in natural order
-		PlainField rows[4];  // links of one row in natural order
+		Interpolation p;   // from this grid to the finer one
+		PlainField plain;  // residuals or corrections in natural order
+		PlainField rows;   // links of one row in natural order, by kind
 		Field<double> f, u, rest;
 		void reshape(const SplitGrid& finer, const std::vector<Span>& finer_spans);
 	};

@@ -14,8 +14,8 @@ public:
 	virtual std::string name() const = 0;
 	/// The matrix has changed. `new_shape`: so have the grid or its parts.
 	virtual void update(const FivePoint& matrix, bool new_shape) = 0;
-	/// z = M r. r and z are 0 in closed cells. A constant on a part that z has too much or too little does no harm.
-	virtual void apply(const Field<double>& r, Field<double>& z) = 0;
+	/// z = M r; the result is r z. r and z are 0 in closed cells. A constant on a part that z has too much or too little does no harm.
+	virtual double apply(const Field<double>& r, Field<double>& z) = 0;
 	/// How many iterations the last solve took: one that keeps an older matrix decides by it when to take the present one.
 	virtual void took(int /*iterations*/, const FivePoint& /*matrix*/) {}
 };

@@ -146,15 +146,21 @@ inline void merge_span(const double* even, const double* odd, const Span& span, 
 	}
 }
 
-/// Calls `work(offset)` for each pack of open cells, row by row.
+/// Calls `work(offset)` for each pack of open cells in a row.
+template <class Work>
+void for_row(const SplitGrid& grid, const std::vector<Span>& spans, int y, Work&& work)
+{
+	for (int parity = 0; parity < 2; ++parity) {
+		const std::size_t row = grid.offset(y, parity);
+		for (int k = spans[y].first; k < spans[y].last; k += lanes) work(row + k);
+	}
+}
+
+/// The same for all rows.
 template <class Work>
 void for_packs(const SplitGrid& grid, const std::vector<Span>& spans, Work&& work)
 {
-	for (int y = 0; y < grid.ny; ++y)
-		for (int parity = 0; parity < 2; ++parity) {
-			const std::size_t row = grid.offset(y, parity);
-			for (int k = spans[y].first; k < spans[y].last; k += lanes) work(row + k);
-		}
+	for (int y = 0; y < grid.ny; ++y) for_row(grid, spans, y, work);
 }
 
 inline double dot(const SplitGrid& grid, const std::vector<Span>& spans, const Field<double>& a, const Field<double>& b)

@@ -214,17 +214,25 @@ TEST(TwoPhaseFlow, an_immersed_wall_holds_the_fluid_within_its_transition)
 	});
 }
 
+/// Largest error of u over its peak for a Bingham fluid, n cells across the channel.
+double bingham_error(int n)
+{
+	const double yield = 0.2, eta = 0.2, sheared = 0.5 - yield, peak = sheared * sheared / (2 * eta);
+	const TwoPhaseFlow flow = steady_channel(one_fluid(laws::BinghamFluid{ yield, eta }, 1e3), n, 4, 0.02);
+	double most = 0;
+	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) {
+		const double in_shear = std::max(0.0, sheared - std::min(y, 1 - y));
+		most = std::max(most, std::abs(u - (peak - in_shear * in_shear / (2 * eta))));
+	});
+	return most / peak;
+}
+
 TEST(TwoPhaseFlow, bingham_flow_in_a_channel_has_a_plug)
 {
-	const double yield = 0.2, eta = 0.2;
-	const TwoPhaseFlow flow = steady_channel(one_fluid(laws::BinghamFluid{ yield, eta }, 1e3), 32, 4, 0.02);
-	const double peak = (0.5 - yield) * (0.5 - yield) / (2 * eta);
-	for_column(flow, 2, 0, 1, [&](double y, double u, std::size_t) {
-		const double from_wall = std::min(y, 1 - y), sheared = 0.5 - yield;
-		const double exact =
-			from_wall < sheared ? (sheared * sheared - (sheared - from_wall) * (sheared - from_wall)) / (2 * eta) : peak;
-		EXPECT_NEAR(u, exact, 0.03 * peak) << "at " << y;
-	});
+	// The viscosity of a cell is that of its mean shear rate, which errs in the cells at walls and at the plug: first order.
+	const double coarse = bingham_error(32), fine = bingham_error(64);
+	EXPECT_LT(fine, 0.02);
+	EXPECT_GT(coarse / fine, 1.7);
 }
 
 // ---- incline
