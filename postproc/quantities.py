@@ -144,7 +144,7 @@ QUANTITIES = {
             "-",
             thickness_over_diameter="drum: h/D, depth below the axis at which u = 0, the paper's h",
             layer_over_diameter="drum: depth below the free surface at which u = 0, over D",
-            surface_over_diameter="drum: z of the free surface on the line through the axis normal to it, < 0 above the axis, over D",
+            surface_over_diameter="drum: z of the free surface on the line through the axis, < 0 above the axis, over D",
             froude="drum: Omega^2 D/2g",
             packing_fraction="drum: solid fraction in the static part; of a continuum the volume fraction of its granular phase",
             surface_speed="drum: largest u over Omega D",

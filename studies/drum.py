@@ -131,7 +131,7 @@ class DrumParameters(StudyParameters):
     @property
     def froude_number(self):
         """Omega^2 D/2g [-]."""
-        return self.omega**2 * self.drum_diameter / 2
+        return self.omega**2 * self.drum_diameter / 2 if self.froude is None else self.froude
 
     def auto_values(self):
         """Return what is taken for the keys that are auto."""
@@ -277,8 +277,8 @@ def check_speed(p):
         )
     if p.froude_number >= CENTRIFUGES:
         raise UsageError(
-            f"Omega={p.omega:.3g} sqrt(g/d) is Fr={p.froude_number:.3g} at D={p.drum_diameter:g} d: from {CENTRIFUGES:g} on grains"
-            " are centrifuged; lower angular_velocity or froude"
+            f"Omega={p.omega:.3g} sqrt(g/d) is Fr={p.froude_number:.3g} at D={p.drum_diameter:g} d: from {CENTRIFUGES:g} on"
+            " grains are centrifuged; lower angular_velocity or froude"
         )
 
 
@@ -294,6 +294,8 @@ def check_room(p):
             f"filling={p.filling:g} leaves the grains no room to be poured and to flow; it must be at most {drum.MOST_FILLING:g}"
         )
     gap = p.drum_diameter * np.sin(np.pi / p.wall_count) - 1
+    if p.wall_count > (most := 2 * round(np.pi * p.drum_diameter)):
+        raise UsageError(f"wall_disks={p.wall_count} are more than twice as many as touch; at most {most} are possible")
     if gap > WIDEST_GAP or p.wall_count < 3:
         raise UsageError(
             f"wall_disks={p.wall_count} leave gaps of {gap:.3g} d, through which grains leave; at least"
@@ -334,7 +336,7 @@ def unit_of_summary(name):
 
 
 def run_grains(p, folder, ratio):
-    """Pour the grains, turn the drum, average the steady flow; or go on where an interrupted run left off; return `Blocks`."""
+    """Pour the grains, turn the drum, average the steady flow, or go on where a run was interrupted; return `Blocks`."""
     dt, grains, march = time_step(p), material(p), YadeMarch()
     if folder.resumed:
         stage = recording.load_stage(folder, march, ("grains", "wall", "average_row", "steady"))
@@ -349,7 +351,7 @@ def run_grains(p, folder, ratio):
 
 
 def record(p, folder, march, stage):
-    """Run in blocks of a degree or less; keep series, frames, checkpoints and, once the flow is steady, its fields; return them."""
+    """Run in blocks of a degree or less; keep series, frames, checkpoints, and once it is steady the flow; return `Blocks`."""
     from yade import O
 
     folder.declare_series(**SERIES)

@@ -1,4 +1,4 @@
-"""A flow in a drum as blocks in time, what is read off their mean, and its standard errors by leaving out one block after the other."""
+"""A flow in a drum as blocks in time: what is read off their mean, and its errors by leaving out one block after the other."""
 
 from dataclasses import dataclass
 

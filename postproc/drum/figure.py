@@ -1,4 +1,4 @@
-"""The figure of one drum run: grains with their free surface, velocity map, u(z) with rigid rotation, angle over turn or fraction."""
+"""The figure of one drum run: grains with their free surface, velocities, u(z) with rigid rotation, angle over turn."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -109,7 +109,7 @@ def draw_maps(axes, run, fields, found):
 
 
 def in_squares(field, edge):
-    """Return x, y, v_x, v_y of the mean velocity in squares of about that edge in which grains are at half of the surface's level."""
+    """Return x, y, v_x, v_y of the mean velocity in squares of about that edge that are full to half of the surface's level."""
     spacing = field.x[1] - field.x[0]
     n = max(1, round(edge / spacing))
     rows, columns = len(field.y) // n, len(field.x) // n

@@ -1,4 +1,4 @@
-"""What is read off a steady flow in a drum, of grains or of a continuum: surface, profile across the layer, thickness, flow rates.
+"""What is read off a steady flow in a drum, of grains or a continuum: surface, profile across the layer, thickness, flow rates.
 
 Definitions of Oba, Otsuki (2025), section III and appendices A, C and D. The drum's axis is the origin of (X, Y), Y upwards; it
 turns counter-clockwise. The rotated frame, Eq. 48, has x down the slope and z into the bed, both from the axis:
@@ -170,7 +170,7 @@ def interpolated(field, values, points):
 
 
 def zero_of(profile):
-    """Return the z at which u, linear between squares, first turns against the slope below its largest value; nan if nowhere."""
+    """Return the z at which u, linear between squares, first changes its sign below its largest value; nan if nowhere."""
     if not np.isfinite(profile.u).any():
         return float("nan")
     fastest = int(np.nanargmax(profile.u))
@@ -182,12 +182,12 @@ def zero_of(profile):
 
 
 def flow_rates(profile):
-    """Return (Q+, Q-), integrals of fraction times u over the squares in which it is > 0 and < 0; Q+ + Q- = 0 in a steady state."""
+    """Return (Q+, Q-), integrals of fraction times u over the squares where u > 0 and u < 0; in a steady state Q+ + Q- = 0."""
     return tuple(float(profile.edge * np.sum(part)) for part in (profile.flux.clip(min=0), profile.flux.clip(max=0)))
 
 
 def static_part(profile, thickness, diameter):
-    """Return which squares lie in the static part: from `STATIC_FROM` thicknesses down to `OFF_THE_WALL` squares from the wall."""
+    """Return which squares lie in the static part: from `STATIC_FROM` thicknesses to `OFF_THE_WALL` squares off the wall."""
     deep = profile.z > STATIC_FROM * thickness
     return deep & (profile.z < diameter / 2 - OFF_THE_WALL * profile.edge) & np.isfinite(profile.u)
 
