@@ -100,6 +100,26 @@ class DrumParameters(StudyParameters):
         1, "-", "pictures of the drum that are kept, evenly in time, the last at the end", ge=1, le=9999
     )
     largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    cells: int = quantity(75, "-", "continuum: cells across the drum", ge=1, le=2000, lever=Lever(300, "lower"))
+    continuum_dt: float = quantity(
+        0.02, "sqrt(d/g)", "continuum: time step; the paper's is 1e-4", gt=0, lever=Lever(1e-3, "higher")
+    )
+    viscosity: Literal["full", "split"] = quantity(
+        "full", "-", "continuum: implicit as a whole, or the paper's, of which a constant part is implicit"
+    )
+    rheology: Literal["mu_i", "regularised"] = quantity(
+        "mu_i", "-", "continuum: mu(I), or that of Barker, Gray (2017), which is well-posed"
+    )
+    static_friction: float = quantity(0.246, "-", "continuum: mu_s of slow flow", gt=0)
+    dynamic_friction: float = quantity(0.401, "-", "continuum: mu_2 of fast flow", gt=0)
+    inertial_scale: float = quantity(0.133, "-", "continuum: I_0 of mu(I)", gt=0)
+    largest_viscosity: float = quantity(
+        8000.0, "m sqrt(g/d)", "continuum: eta_max, of what rests", gt=0, lever=Lever(8e4, "lower")
+    )
+    tolerance: float = quantity(
+        1e-5, "-", "continuum: residual of the pressure at which its solver ends", gt=0, lt=1, lever=Lever(1e-8, "higher")
+    )
+    pressure_solver: str = quantity("", "-", "continuum: name of the pressure's solver; empty: the fastest")
 
     @property
     def omega(self):
@@ -310,7 +330,8 @@ def run(p, folder):
     """Do what `model` asks for, then read surface, profile and thickness off the fields, and compare the two."""
     ratio, flows = check(p), {}
     if p.model != "continuum":
-        flows["dem"] = run_grains(p, folder, ratio)
+        before = drum_continuum.grains_before(folder)
+        flows["dem"] = run_grains(p, folder, ratio) if before is None else before
     if p.model != "dem":
         flows["continuum"] = drum_continuum.run(p, folder)
     flows = {model: blocks.steady_flow(seen, p.drum_diameter, p.omega) for model, seen in flows.items()}

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 SQUARE = 1.2  # d, edge of the squares in which the paper takes the velocity
-SURFACE_LEVEL = {"dem": 0.7, "continuum": 0.5}  # of the solid fraction; of the volume fraction of the granular phase
+BED_FRACTION = 0.825  # solid fraction of the continuum's bed: the paper's, of the static part
+SURFACE_LEVEL = {"dem": 0.7, "continuum": 0.5 * BED_FRACTION}  # of the solid fraction; alpha = 1/2
 SURFACE_REACH = 1 / 8  # of the diameter: the surface is a line through its points that far on either side of the axis
 SUB_POINTS = 8  # along each edge of a square
 LEAST_FRACTION = 0.02  # with less in a square there is no velocity
@@ -23,7 +24,7 @@ ABOVE = 0.1  # of the diameter: where profiles begin, above the axis
 class FlowField:
     """A steady flow on a grid: `x` (nx,), `y` (ny,) centres of cells, evenly spaced, the axis at 0; fields (ny, nx).
 
-    `fraction` is the solid fraction of grains, or the volume fraction of the granular phase. Velocities count where it is not
+    `fraction` is the solid fraction, of a continuum `BED_FRACTION` times the volume fraction of the granular phase. Velocities count where it is not
     0, and may be nan elsewhere. The free surface is where it falls to `surface_level`.
     """
 

@@ -1,27 +1,232 @@
-"""The continuum in a drum, model=continuum of the drum study: what the study asks of it. It is not built yet.
+"""The continuum in a drum, model=continuum of the drum study: the flow, its steady state, and the fields that it leaves.
 
-`run` solves the flow and stores it as the group `fields/continuum` of the run folder, under the names of `fields.write_fields`:
-x (nx,), y (ny,) [d], centres of cells with the drum's axis at 0; samples (blocks,); area_fraction (blocks, ny, nx), the volume
-fraction alpha of the granular phase; velocity (blocks, ny, nx, 2) [sqrt(g d)] at the centres of cells. A block is a mean over
-a part of the steady state; one is enough, and then there are no errors. The study does all else from there, by
-`postproc.drum.blocks`. With model=both the grains have run before, in the same folder.
+The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d, rho, g.
+Readings: the layer within the wall's transition belongs to the wall and is full of grains (the paper fills its lower half and
+lets it turn, so that a film of gas comes between wall and bed after half a turn); averages begin when the centre of mass has
+come to rest, after START_TURN at least.
+
+`run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
+samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
+[sqrt(g d)]; pressure (blocks, ny, nx) [rho g d]; ill_posed (ny, nx), the share of the time in which the equations were ill-posed.
 """
 
-from .errors import UsageError
+import sys
 
-NOT_BUILT = "model={} is not built yet; take model=dem"
+import h5py
+import numpy as np
+
+from . import checkpoint, progress, recording, surfaces
+from .continuum import FieldMeans, FlowMarch, centres
+from .engines import TwoPhaseFlow
+from .errors import UsageError
+from .postproc.drum import blocks
+from .postproc.drum.flow import BED_FRACTION, SURFACE_LEVEL
+from .postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady
+
+GRAIN_MASS = np.pi / 4  # m [rho d^2]: the paper's viscosities and pressures are in m, g, d
+GAS_DENSITY, GAS_VISCOSITY = 1e-3, 1e-6  # of those of the bed, the viscosity of the largest
+LEAST_PRESSURE = 1e-5  # m g/d
+SHELL = 16  # cells around the drum
+TRANSITION = 2  # half width of the wall's transition, in cells
+START_TURN, MOST_TURN, WINDOW = 45.0, 180.0, 30.0  # degrees: before averages at least, at most, and their length
+BLOCKS = 8
+FEWEST_CELLS = 20
+RATE = 2.5e6  # cell-steps per second of one core at continuum_dt=0.02
+PART = "continuum"  # of a run with both models, in its checkpoints
+NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_second")
 
 
 def check(p):
     """UsageError for parameters of which no continuum can be made."""
-    raise UsageError(NOT_BUILT.format(p.model))
+    if p.cells < FEWEST_CELLS:
+        raise UsageError(f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75")
+    cells = p.drum_diameter / p.cells
+    if p.filling > 0.9:
+        raise UsageError(f"filling={p.filling:g} leaves the continuum no free surface; it must be at most 0.9")
+    wanted = p.filling * np.pi / 4 * p.drum_diameter**2
+    if wanted < 20 * cells**2:
+        raise UsageError(f"filling={p.filling:g} is less than 20 cells of {cells:.3g} d; raise filling or cells")
+    if p.dynamic_friction < p.static_friction:
+        raise UsageError(
+            f"dynamic_friction={p.dynamic_friction:g} must not be below static_friction={p.static_friction:g}; exchange them"
+        )
+    try:
+        flow_of(p)
+    except ValueError as error:
+        raise UsageError(f"of these keys no continuum can be made: {error}") from None
+    progress.require_feasible(np.radians(MOST_TURN + WINDOW) / (p.omega * p.continuum_dt))
 
 
-def run(p, folder):
-    """Solve the flow with the parameters `p` of the drum study and store it in an open RunFolder; resumes as grains do."""
-    raise UsageError(NOT_BUILT.format(p.model))
+def level_of(p):
+    """Return the height [d] below which the open part of the drum is filled at the start."""
+    radius = p.drum_diameter / 2
+    y = np.linspace(-radius, radius, 4001)
+    area = np.cumsum(np.sqrt(np.maximum(radius**2 - y**2, 0)))
+    return float(np.interp(p.filling, area / area[-1], y))
+
+
+def flow_of(p):
+    """Return the `TwoPhaseFlow` of the drum, at rest with a level surface; ValueError where the solver refuses it."""
+    spacing = p.drum_diameter / p.cells
+    count = p.cells + 2 * SHELL
+    low = -count * spacing / 2
+    x = centres(low, spacing, count)
+    radius, level = np.hypot(x[None, :], x[:, None]), level_of(p)
+    below = np.clip((level - x[:, None]) / spacing + 0.5, 0, 1)  # the part of a cell that lies below the level
+    fraction = np.where(radius > p.drum_diameter / 2 - TRANSITION * spacing, 1.0, np.broadcast_to(below, radius.shape))
+    density, largest = BED_FRACTION, p.largest_viscosity * GRAIN_MASS
+    return TwoPhaseFlow(
+        fraction,
+        ~surfaces.cylinder((0, 0, 0), axis=(0, 0, 1), radius=p.drum_diameter / 2),
+        **dict(cells_x=count, cells_y=count, spacing=spacing, low_x=low, low_y=low, transition=TRANSITION, wall_spin=p.omega),
+        **dict(rheology=p.rheology, static_friction=p.static_friction, dynamic_friction=p.dynamic_friction),
+        **dict(inertial_scale=p.inertial_scale, grain_diameter=1.0, grain_density=1.0, density=density),
+        **dict(largest_viscosity=largest, least_pressure=LEAST_PRESSURE * GRAIN_MASS),
+        **dict(gas_density=GAS_DENSITY * density, gas_viscosity=GAS_VISCOSITY * largest, gravity_y=-1.0),
+        **dict(time_step=p.continuum_dt, viscosity=p.viscosity, tolerance=p.tolerance, pressure_solver=p.pressure_solver),
+    )
+
+
+def block_steps(p):
+    """Return the steps between two rows: a degree of turn, or less where the start would have too few."""
+    degrees = min(1.0, START_TURN / (STRETCHES * 2 * FEWEST_ROWS), WINDOW / (4 * BLOCKS))
+    return max(1, round(np.radians(degrees) / (p.omega * p.continuum_dt)))
+
+
+def rows_of(p, degrees):
+    """Return how many rows a turn takes."""
+    return max(1, round(np.radians(degrees) / (p.omega * p.continuum_dt * block_steps(p))))
 
 
 def seconds(p):
     """Return the seconds that `run` takes one core."""
-    return 0.0
+    steps = np.radians(START_TURN + WINDOW) / (p.omega * p.continuum_dt)
+    return steps * (p.cells + 2 * SHELL) ** 2 / RATE
+
+
+class Record(recording.Track):
+    """Rows and means of the steady flow, both kept in checkpoints."""
+
+    def __init__(self, folder, means):
+        super().__init__(folder)
+        self.means = means
+        if folder.resumed:
+            means.load(folder.resumed["folder"])
+
+    def save(self, folder):
+        super().save(folder)
+        self.means.save(folder)
+
+
+def grains_before(folder):
+    """Return the `Blocks` of the grains that ran before in a resumed run of both models, or None if they have not ended."""
+    if not (folder.resumed and folder.resumed.get("part") == PART and "grains_summary" in folder.resumed):
+        return None
+    folder.summary.update(folder.resumed["grains_summary"])
+    folder.units.update(folder.resumed["grains_units"])
+    folder.note(**folder.resumed["grains_notes"])
+    with h5py.File(folder.path / checkpoint.DATA) as file:
+        found = {name: data[()] for name, data in file["fields/dem"].items()}
+    return blocks.blocks_of(
+        *(found[name] for name in ("x", "y", "area_fraction", "velocity", "samples")), SURFACE_LEVEL["dem"]
+    )
+
+
+def run(p, folder):
+    """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or go on with it; return its `Blocks`."""
+    flow = flow_of(p)
+    march = FlowMarch(flow)
+    going_on = folder.resumed and folder.resumed.get("part") == PART
+    before = 0 if p.model == "continuum" else int(folder.provenance["steps"])
+    stage = dict(part=PART, average_row=-1)
+    if p.model == "both":
+        stage.update(grains_summary=dict(folder.summary), grains_units=dict(folder.units))
+        stage.update(grains_notes={name: folder.provenance[name] for name in NOTES if name in folder.provenance})
+    if going_on:
+        stage.update(recording.load_stage(folder, march, ("average_row",)))
+    print(
+        f"{march.size} cells of {p.drum_diameter / p.cells:.3g} d, dt = {p.continuum_dt:.3g} sqrt(d/g),"
+        f" a turn in {2 * np.pi / p.omega:.4g} sqrt(d/g)",
+        file=sys.stderr,
+    )
+    return record(p, folder, march, stage, before, going_on)
+
+
+def record(p, folder, march, stage, before, going_on):
+    """March to the steady flow and over its averages, then store rows and fields; return the `Blocks`."""
+    flow = march.flow
+    means = FieldMeans(BLOCKS, flow.fraction.shape)
+    track = Record(folder if going_on else NotResumed, means)
+    window, first_possible, last_possible = (rows_of(p, turn) for turn in (WINDOW, START_TURN, MOST_TURN))
+    area = flow.total_area
+
+    def sample(_done):
+        track.append(row_of(p, march))
+        number = len(track) - 1
+        columns = track.columns
+        if stage["average_row"] < 0 and number >= first_possible:
+            if is_steady(columns["turn"], columns["centre_angle"], START_TURN) or number >= last_possible:
+                stage["average_row"] = number
+        if stage["average_row"] >= 0:
+            means.add(min(BLOCKS - 1, (number - stage["average_row"]) * BLOCKS // (window + 1)), flow)
+        return 0 <= stage["average_row"] <= number - window
+
+    block = block_steps(p)
+    steps = (last_possible + window) * block
+    label = f"a continuum turns by {START_TURN + WINDOW:g} degrees or more"
+    recording.run_sampled(folder, march, steps, block, sample, track=track, stage=stage, label=label, before=before)
+    if before:
+        folder.note(steps=before)  # those of the grains, whose rate stands beside them
+    return keep(p, folder, march, track, means, area, stage)
+
+
+class NotResumed:
+    """Stands for a run folder where a part of a resumed run begins anew."""
+
+    resumed = None
+
+
+def row_of(p, march):
+    """Return what is known of the flow now: time, turn [degrees], the angle of the bed's centre of mass [degrees], its speed."""
+    flow = march.flow
+    x, y = grid_of(p)
+    weight = flow.fraction * (flow.openness >= 1)
+    speed = np.sqrt((weight[..., None] * flow.velocity**2).sum() / weight.sum())
+    angle = centre_angle(np.broadcast_to(x, weight.shape), np.broadcast_to(y[:, None], weight.shape), weight)
+    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), centre_angle=angle, speed=float(speed))
+
+
+def grid_of(p):
+    """Return centres of cells (x, y), each (n,) [d]."""
+    spacing, count = p.drum_diameter / p.cells, p.cells + 2 * SHELL
+    x = centres(-count * spacing / 2, spacing, count)
+    return x, x
+
+
+def keep(p, folder, march, track, means, area, stage):
+    """Store the rows as `continuum`, the means as `fields/continuum`; return the `Blocks` of the steady flow."""
+    x, y = grid_of(p)
+    flow, columns = march.flow, track.arrays()
+    units = dict(t="sqrt(d/g)", turn="degrees", centre_angle="degrees", speed="sqrt(g d)")
+    folder.write("continuum", {name: (values, units[name]) for name, values in columns.items()})
+    inside = flow.openness >= 1  # the layer in which fluid becomes wall counts as wall
+    fraction = BED_FRACTION * np.clip(means.mean("fraction"), 0, 1) * inside
+    ill_posed = means.sums["ill_posed"].sum(axis=0) / means.samples.sum()
+    fields = dict(
+        x=(x, "d"),
+        y=(y, "d"),
+        samples=(means.samples, "-"),
+        area_fraction=(fraction, "-"),
+        velocity=(means.velocity, "sqrt(g d)"),
+        pressure=(means.mean("pressure"), "rho g d"),
+        ill_posed=(ill_posed, "-"),
+    )
+    folder.write("fields/continuum", fields, spacing=p.drum_diameter / p.cells, part_of_the_bed=BED_FRACTION)
+    bed = np.clip(flow.fraction, 0, 1) * inside
+    folder.summarize(
+        continuum_steps=flow.steps,
+        ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
+        continuum_area_drift=float(flow.total_area / area - 1),
+        continuum_steady=int(is_steady(columns["turn"][: stage["average_row"] + 1], columns["centre_angle"][: stage["average_row"] + 1], START_TURN)),
+    )
+    return blocks.blocks_of(x, y, fraction, means.velocity, means.samples, SURFACE_LEVEL["continuum"])

@@ -97,15 +97,17 @@ def announce(folder, *, grains, dt, ratio, unit, also=""):
     print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
-def run_sampled(folder, march, steps, block, sample, *, label, track=None, frames=None, stage=None):
+def run_sampled(folder, march, steps, block, sample, *, label, track=None, frames=None, stage=None, before=0):
     """Have a `March` go `steps` steps from the run's start, calling `sample(done)` after every `block`; return the steps done.
 
     A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too; of one that was, the march stands
     where its checkpoint does (`load_stage`). `frames` are taken at their own steps, inside of blocks too, and once more at
     the end if that came early. A checkpoint of the march, the `track` and the facts `stage` is written every
-    `checkpoint_seconds`. Steps and rate go to the folder's provenance.
+    `checkpoint_seconds`. Steps and rate go to the folder's provenance. A run of several parts says how many steps those
+    `before` this one took: its checkpoints count them, and one that was made before belongs to another part.
     """
-    first, stage = folder.resumed["step"] if folder.resumed else 0, stage or {}
+    resumed = bool(folder.resumed) and folder.resumed["step"] > before
+    first, stage = folder.resumed["step"] - before if resumed else 0, stage or {}
     frames = frames or Frames(folder, (), None)
     checkpoints = progress.Every(folder.parameters.checkpoint_seconds)
 
@@ -118,10 +120,10 @@ def run_sampled(folder, march, steps, block, sample, *, label, track=None, frame
         ended = sample(first + done)
         frames.take_if_due(first + done, march.time)
         if checkpoints.due():
-            folder.checkpoint(save, first + done, **stage)
+            folder.checkpoint(save, before + first + done, **stage)
         return ended
 
-    if not folder.resumed:
+    if not resumed:
         sample(0)
         frames.take_if_due(0, march.time)
     timing = progress.run_blocks(
