@@ -41,7 +41,7 @@ SolveReport KrylovSolver::solve(const std::vector<double>& rhs, std::vector<doub
 		report.iterations += iterate(target, limit - report.iterations);
 		rr = matrix.residual(f, x, r);
 	}
-	preconditioner->took(report.iterations, matrix);
+	preconditioner->took(report.iterations);
 	store(p);
 	report.residual = ff > 0 ? std::sqrt(rr / ff) : 0;
 	if (rr <= target) return report;

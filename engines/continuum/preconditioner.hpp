@@ -17,11 +17,15 @@ public:
 	/// z = M r; the result is r z. r and z are 0 in closed cells. A constant on a part that z has too much or too little does no harm.
 	virtual double apply(const Field<double>& r, Field<double>& z) = 0;
 	/// How many iterations the last solve took: one that keeps an older matrix decides by it when to take the present one.
-	virtual void took(int /*iterations*/, const FivePoint& /*matrix*/) {}
+	virtual void took(int /*iterations*/) {}
 };
 
 /// Division by the diagonal.
 std::unique_ptr<Preconditioner> make_jacobi_preconditioner();
+/// The Cholesky factor of an older matrix.
+std::unique_ptr<Preconditioner> make_cholesky_preconditioner();
+/// One density in the whole box.
+std::unique_ptr<Preconditioner> make_cosine_preconditioner();
 /// A cycle of multigrid.
 std::unique_ptr<Preconditioner> make_multigrid_preconditioner();
 

@@ -1,0 +1,77 @@
+/// The sparse Cholesky factor of an older matrix as preconditioner, taken anew when it has aged.
+#include <Eigen/SparseCholesky>
+
+#include "engines/continuum/open_cells.hpp"
+#include "engines/continuum/preconditioner.hpp"
+
+namespace graindrive::continuum {
+namespace {
+
+// A factor costs as much as some tens of iterations: it is kept until a solve takes more than this.
+constexpr int most_iterations = 8;
+
+class Cholesky : public Preconditioner {
+public:
+	std::string name() const override { return "cholesky"; }
+
+	void update(const FivePoint& matrix, bool new_shape) override
+	{
+		if (new_shape) {
+			cells.find(matrix);
+			const long n = long(cells.places.size());
+			from.resize(n);
+			turned.resize(n);
+			solution.resize(n);
+			fill(matrix);
+			factor.analyzePattern(lower);
+			aged = true;
+		}
+		if (!aged) return;
+		fill(matrix);
+		factor.factorize(lower);
+		aged = false;
+	}
+
+	double apply(const Field<double>& r, Field<double>& z) override
+	{
+		cells.gather(r, from.data());
+		turned.noalias() = factor.permutationP() * from;
+		factor.matrixL().solveInPlace(turned);
+		factor.matrixU().solveInPlace(turned);
+		solution.noalias() = factor.permutationPinv() * turned;
+		cells.scatter(solution.data(), z);
+		return from.dot(solution);
+	}
+
+	void took(int iterations) override { aged |= iterations > most_iterations; }
+
+private:
+	// One cell of each part is tied to p = 0 by a link as strong as its others together: then the matrix is definite, and for a right side
+	// without mean the solution is still exact.
+	void fill(const FivePoint& matrix)
+	{
+		const int n = int(cells.places.size());
+		std::vector<Eigen::Triplet<double>> entries;
+		std::vector<double> diagonal(n);
+		cells.for_links(matrix, [&](int a, int b, double link) {
+			entries.emplace_back(std::max(a, b), std::min(a, b), -link);
+			diagonal[a] += link, diagonal[b] += link;
+		});
+		for (const int tied : cells.first_of_part) diagonal[tied] *= 2;
+		for (int k = 0; k < n; ++k) entries.emplace_back(k, k, diagonal[k]);
+		lower.resize(n, n);
+		lower.setFromTriplets(entries.begin(), entries.end());
+	}
+
+	OpenCells cells;
+	Eigen::SparseMatrix<double> lower;
+	Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor;
+	Eigen::VectorXd from, turned, solution;
+	bool aged = true;
+};
+
+}  // namespace
+
+std::unique_ptr<Preconditioner> make_cholesky_preconditioner() { return std::make_unique<Cholesky>(); }
+
+}  // namespace graindrive::continuum
