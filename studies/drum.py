@@ -117,7 +117,12 @@ class DrumParameters(StudyParameters):
         8000.0, "m sqrt(g/d)", "continuum: eta_max, of what rests", gt=0, lever=Lever(8e4, "lower")
     )
     tolerance: float = quantity(
-        1e-5, "-", "continuum: residual of the pressure at which its solver ends", gt=0, lt=1, lever=Lever(1e-8, "higher")
+        1e-5,
+        "-",
+        "continuum: residual of the pressure at which its solver ends",
+        gt=0,
+        lt=1,
+        lever=Lever(1e-8, "higher"),
     )
     pressure_solver: str = quantity("", "-", "continuum: name of the pressure's solver; empty: the fastest")
 

@@ -42,8 +42,8 @@ FlowWords words_of(const py::dict& given)
 		left.remove(py::object(name));
 	});
 	if (py::len(left) > 0)
-		throw std::invalid_argument(
-			"a flow does not know '" + std::string(py::extract<std::string>(py::str(py::object(left[0])))) + "'; it knows " + names);
+		throw std::invalid_argument("a flow does not know '" +
+									std::string(py::extract<std::string>(py::str(py::object(left[0])))) + "'; it knows " + names);
 	return words;
 }
 
@@ -181,9 +181,9 @@ void bind_continuum()
 	py::class_<TwoPhaseFlow, boost::shared_ptr<TwoPhaseFlow>, boost::noncopyable>("TwoPhaseFlow",
 		"Grains and gas as two incompressible fluids in a moving vessel, in the plane; graindrive.continuum makes them.\n\n"
 		"TwoPhaseFlow(fraction, solid, cells_x=…, cells_y=…, spacing=…, …): `fraction` [-] of the dense fluid in the cells, "
-	    "shape\n"
+		"shape\n"
 		"(cells_y, cells_x); `solid`, a Surface whose section at z = 0 is the vessel, or None; keywords as flow_words() lists "
-	    "them.\n"
+		"them.\n"
 		"Equations: Oba, Otsuki (2025), section II.3. Raises ValueError for what cannot be, with the rule and the value.",
 		py::no_init)
 		.def("__init__", py::raw_function(&construct, 1))

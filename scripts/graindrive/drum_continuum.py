@@ -39,7 +39,9 @@ NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_seco
 def check(p):
     """UsageError for parameters of which no continuum can be made."""
     if p.cells < FEWEST_CELLS:
-        raise UsageError(f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75")
+        raise UsageError(
+            f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75"
+        )
     cells = p.drum_diameter / p.cells
     if p.filling > 0.9:
         raise UsageError(f"filling={p.filling:g} leaves the continuum no free surface; it must be at most 0.9")
@@ -78,12 +80,22 @@ def flow_of(p):
     return TwoPhaseFlow(
         fraction,
         ~surfaces.cylinder((0, 0, 0), axis=(0, 0, 1), radius=p.drum_diameter / 2),
-        **dict(cells_x=count, cells_y=count, spacing=spacing, low_x=low, low_y=low, transition=TRANSITION, wall_spin=p.omega),
+        **dict(
+            cells_x=count,
+            cells_y=count,
+            spacing=spacing,
+            low_x=low,
+            low_y=low,
+            transition=TRANSITION,
+            wall_spin=p.omega,
+        ),
         **dict(rheology=p.rheology, static_friction=p.static_friction, dynamic_friction=p.dynamic_friction),
         **dict(inertial_scale=p.inertial_scale, grain_diameter=1.0, grain_density=1.0, density=density),
         **dict(largest_viscosity=largest, least_pressure=LEAST_PRESSURE * GRAIN_MASS),
         **dict(gas_density=GAS_DENSITY * density, gas_viscosity=GAS_VISCOSITY * largest, gravity_y=-1.0),
-        **dict(time_step=p.continuum_dt, viscosity=p.viscosity, tolerance=p.tolerance, pressure_solver=p.pressure_solver),
+        **dict(
+            time_step=p.continuum_dt, viscosity=p.viscosity, tolerance=p.tolerance, pressure_solver=p.pressure_solver
+        ),
     )
 
 
@@ -227,6 +239,12 @@ def keep(p, folder, march, track, means, area, stage):
         continuum_steps=flow.steps,
         ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
         continuum_area_drift=float(flow.total_area / area - 1),
-        continuum_steady=int(is_steady(columns["turn"][: stage["average_row"] + 1], columns["centre_angle"][: stage["average_row"] + 1], START_TURN)),
+        continuum_steady=int(
+            is_steady(
+                columns["turn"][: stage["average_row"] + 1],
+                columns["centre_angle"][: stage["average_row"] + 1],
+                START_TURN,
+            )
+        ),
     )
     return blocks.blocks_of(x, y, fraction, means.velocity, means.samples, SURFACE_LEVEL["continuum"])
