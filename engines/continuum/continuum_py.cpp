@@ -156,6 +156,18 @@ py::dict report(const TwoPhaseFlow& flow)
 	return all;
 }
 
+py::dict part_times(const TwoPhaseFlow& flow)
+{
+	const PartTimes& times = flow.part_times();
+	py::dict all;
+	all["material"] = times.material;
+	all["forces"] = times.forces;
+	all["pressure"] = times.pressure;
+	all["viscosity"] = times.viscosity;
+	all["surface"] = times.surface;
+	return all;
+}
+
 /// Without the interpreter's lock, so that other threads of Python go on.
 void advance(TwoPhaseFlow& flow, long steps)
 {
@@ -218,6 +230,7 @@ void bind_continuum()
 		.add_property("area", &TwoPhaseFlow::area, "of the dense fluid in the open part of the cells")
 		.add_property("total_area", attribute([](TwoPhaseFlow& f) { return area_of(f.grid(), f.state().fraction); }),
 			"of the dense fluid in all cells: nothing changes it")
+		.add_property("part_times", &part_times, "wall time [s] of the parts of all steps so far")
 		.add_property("report", &report, "what the last step took")
 		.def("state", &state, "All that decides how the flow goes on: {name: array or number}.")
 		.def("restore", &restore, (py::arg("state")),

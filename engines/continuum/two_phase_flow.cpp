@@ -2,7 +2,9 @@
 #include "engines/continuum/two_phase_flow.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -49,6 +51,14 @@ void extrapolate(Values& present, Values& before)
 		before[k] = present[k];
 		present[k] = next;
 	}
+}
+
+template <class Part>
+void timed(double& seconds, Part&& part)
+{
+	const auto start = std::chrono::steady_clock::now();
+	part();
+	seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void add_in_cells(const Grid& grid, const Values& what, Values& to)
@@ -168,12 +178,12 @@ void TwoPhaseFlow::set_time_step(double dt)
 
 void TwoPhaseFlow::step()
 {
-	find_material();
-	find_forces();
-	find_pressure();
-	predict();
-	project();
-	move_surface();
+	timed(times.material, [&] { find_material(); });
+	timed(times.forces, [&] { find_forces(); });
+	timed(times.pressure, [&] { find_pressure(); });
+	timed(times.viscosity, [&] { predict(); });
+	timed(times.pressure, [&] { project(); });
+	timed(times.surface, [&] { move_surface(); });
 	require_followed();
 	now.time += how.time_step;
 	++now.steps;

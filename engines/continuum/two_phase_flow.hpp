@@ -70,6 +70,15 @@ struct StepReport {
 	double divergence = 0;  ///< largest |div v| [1/time]
 };
 
+/// Wall time [s] that the parts of all steps so far took: what one looks at to make the solver faster.
+struct PartTimes {
+	double material = 0;   ///< rates, viscosity, density, coefficients and preconditioner of the pressure
+	double forces = 0;     ///< advection and viscous forces
+	double pressure = 0;   ///< both pressures and the correction of the velocity
+	double viscosity = 0;  ///< the implicit part of the momentum equation
+	double surface = 0;    ///< transport of the fraction
+};
+
 class TwoPhaseFlow {
 public:
 	/// At rest, with the pressure of rest. `fraction(x, y)` is alpha at the start, averaged over 8 x 8 points a cell.
@@ -95,6 +104,7 @@ public:
 	/// Takes a state whole. @throws std::invalid_argument for arrays of another size, or a number that is not finite
 	void restore(const FlowState& state);
 	const StepReport& report() const { return last; }
+	const PartTimes& part_times() const { return times; }
 
 	/// Shear rate and viscosity in cells, of the present velocity and pressure.
 	const Values& present_shear_rate();
@@ -111,6 +121,7 @@ private:
 	FlowSettings how;
 	FlowState now;
 	StepReport last;
+	PartTimes times;
 
 	VolumeOfFluid transport;
 	SplitViscosity split;
