@@ -19,6 +19,25 @@ void fill_ghosts(const Grid& grid, Values& cells)
 		}
 }
 
+void extrapolate_ghosts(const Grid& grid, Values& cells)
+{
+	fill_ghosts(grid, cells);
+	const int nx = grid.nx, ny = grid.ny;
+	const auto line = [&](std::size_t ghost, std::size_t last, std::size_t before, int distance) {
+		cells[ghost] = cells[last] + distance * (cells[last] - cells[before]);
+	};
+	for (int k = 1; k <= Grid::ghosts; ++k)
+		for (int j = 0; j < ny && !grid.periodic_x; ++j) {
+			line(grid.at(-k, j), grid.at(0, j), grid.at(1, j), k);
+			line(grid.at(nx - 1 + k, j), grid.at(nx - 1, j), grid.at(nx - 2, j), k);
+		}
+	for (int k = 1; k <= Grid::ghosts; ++k)
+		for (int i = -Grid::ghosts; i < nx + Grid::ghosts; ++i) {
+			line(grid.at(i, -k), grid.at(i, 0), grid.at(i, 1), k);
+			line(grid.at(i, ny - 1 + k), grid.at(i, ny - 1), grid.at(i, ny - 2), k);
+		}
+}
+
 void fill_ghosts(const Grid& grid, FaceValues& velocity, Edge edge)
 {
 	const int nx = grid.nx, ny = grid.ny;

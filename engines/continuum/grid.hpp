@@ -66,6 +66,9 @@ enum class Edge { slips, sticks };
 /// Cell values continue without change beyond closed edges.
 void fill_ghosts(const Grid& grid, Values& cells);
 
+/// Cell values go on beyond closed edges as straight lines through the last two cells: of a pressure, which has a slope there.
+void extrapolate_ghosts(const Grid& grid, Values& cells);
+
 /// No flow through closed edges; along them the mirror image, or its opposite where the edge holds the fluid.
 void fill_ghosts(const Grid& grid, FaceValues& velocity, Edge edge);
 

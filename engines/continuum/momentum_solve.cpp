@@ -84,7 +84,7 @@ FullViscosity::FullViscosity(const Grid& g, const Domain& domain, Edge e)
 {
 }
 
-void FullViscosity::apply(const FaceValues& inertia, const Values& viscosity, FaceValues& of, FaceValues& result)
+void FullViscosity::apply(const FaceValues& inertia, const Viscosities& viscosity, FaceValues& of, FaceValues& result)
 {
 	fill_ghosts(grid, of, edge);
 	rates_of(grid, of, rates);
@@ -98,16 +98,16 @@ void FullViscosity::apply(const FaceValues& inertia, const Values& viscosity, Fa
 	component(inertia.y, of.y, free.y, result.y);
 }
 
-void FullViscosity::find_diagonal(const FaceValues& inertia, const Values& eta)
+void FullViscosity::find_diagonal(const FaceValues& inertia, const Viscosities& viscosity)
 {
 	const std::size_t up = grid.stride();
 	const double scale = 1 / (grid.spacing * grid.spacing);
-	const auto node = [&](std::size_t n) { return at_node(eta.data(), n, up); };
+	const Values &eta = viscosity.cells, &nodes = viscosity.nodes;
 	for_rows(grid, [&](std::size_t first, std::size_t end) {
 		for (std::size_t f = first; f < end; ++f) {
-			const double here = node(f);
-			const double x = inertia.x[f] + scale * (2 * (eta[f] + eta[f - 1]) + here + node(f + up));
-			const double y = inertia.y[f] + scale * (2 * (eta[f] + eta[f - up]) + here + node(f + 1));
+			const double here = nodes[f];
+			const double x = inertia.x[f] + scale * (2 * (eta[f] + eta[f - 1]) + here + nodes[f + up]);
+			const double y = inertia.y[f] + scale * (2 * (eta[f] + eta[f - up]) + here + nodes[f + 1]);
 			over_diagonal.x[f] = free.x[f] / (free.x[f] > 0 ? x : 1);
 			over_diagonal.y[f] = free.y[f] / (free.y[f] > 0 ? y : 1);
 		}
@@ -115,7 +115,7 @@ void FullViscosity::find_diagonal(const FaceValues& inertia, const Values& eta)
 }
 
 MomentumReport FullViscosity::solve(
-	const FaceValues& inertia, const Values& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance)
+	const FaceValues& inertia, const Viscosities& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance)
 {
 	find_diagonal(inertia, viscosity);
 	apply(inertia, viscosity, velocity, image);

@@ -36,7 +36,7 @@ public:
 	FullViscosity(const Grid& grid, const Domain& domain, Edge edge);
 	/// `velocity` in: first guess, and what is fixed; out: solution. @throws std::runtime_error if the tolerance is not reached
 	MomentumReport solve(
-		const FaceValues& inertia, const Values& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance);
+		const FaceValues& inertia, const Viscosities& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance);
 
 private:
 	Grid grid;
@@ -44,8 +44,8 @@ private:
 	FaceValues free, direction, image, rest, preconditioned, over_diagonal;
 	Rates rates, stresses;
 
-	void apply(const FaceValues& inertia, const Values& viscosity, FaceValues& of, FaceValues& result);
-	void find_diagonal(const FaceValues& inertia, const Values& viscosity);
+	void apply(const FaceValues& inertia, const Viscosities& viscosity, FaceValues& of, FaceValues& result);
+	void find_diagonal(const FaceValues& inertia, const Viscosities& viscosity);
 };
 
 }  // namespace graindrive::continuum

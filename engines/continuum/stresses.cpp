@@ -7,14 +7,6 @@ namespace graindrive::continuum {
 
 namespace {
 
-/// `work(index)` for all cells and the first ghosts to the right and above, which are the nodes of the grid.
-template <class Work>
-void for_nodes(const Grid& grid, Work&& work)
-{
-	for (int j = 0; j <= grid.ny; ++j)
-		for (std::size_t n = grid.at(0, j), end = n + std::size_t(grid.nx) + 1; n < end; ++n) work(n);
-}
-
 /// Cells with one layer of ghosts around them.
 template <class Work>
 void for_cells_and_ghosts(const Grid& grid, Work&& work)
@@ -53,18 +45,30 @@ void shear_rate(const Grid& grid, const Rates& rates, Values& rate)
 	}
 }
 
-void viscous_force(const Grid& grid, const Rates& rates, const Values& viscosity, Rates& stresses, FaceValues& force)
+void shear_rate_at_nodes(const Grid& grid, const Rates& rates, Values& rate)
+{
+	const std::size_t up = grid.stride();
+	const double *xx = rates.along_x.data(), *yy = rates.along_y.data(), *xy = rates.shear.data();
+	double* out = rate.data();
+	const auto squares = [&](std::size_t c) { return xx[c] * xx[c] + yy[c] * yy[c]; };
+	for_nodes(grid, [&](std::size_t n) {
+		const double cells = squares(n) + squares(n - 1) + squares(n - up) + squares(n - up - 1);
+		out[n] = std::sqrt(0.5 * cells + xy[n] * xy[n]);
+	});
+}
+
+void viscous_force(const Grid& grid, const Rates& rates, const Viscosities& viscosities, Rates& stresses, FaceValues& force)
 {
 	const std::size_t up = grid.stride();
 	const double scale = 1 / grid.spacing;
-	const double* eta = viscosity.data();
+	const double *eta = viscosities.cells.data(), *eta_nodes = viscosities.nodes.data();
 	double *xx = stresses.along_x.data(), *yy = stresses.along_y.data(), *xy = stresses.shear.data();
 	const double *rate_xx = rates.along_x.data(), *rate_yy = rates.along_y.data(), *rate_xy = rates.shear.data();
 	for_cells_and_ghosts(grid, [&](std::size_t c) {
 		xx[c] = 2 * eta[c] * rate_xx[c];
 		yy[c] = 2 * eta[c] * rate_yy[c];
 	});
-	for_nodes(grid, [&](std::size_t n) { xy[n] = at_node(eta, n, up) * rate_xy[n]; });
+	for_nodes(grid, [&](std::size_t n) { xy[n] = eta_nodes[n] * rate_xy[n]; });
 	double *fx = force.x.data(), *fy = force.y.data();
 	for (int j = 0; j < grid.ny; ++j)
 		for (std::size_t f = grid.at(0, j), end = f + std::size_t(grid.nx); f < end; ++f) {

@@ -18,17 +18,32 @@ void rates_of(const Grid& grid, const FaceValues& velocity, Rates& rates);
 /// (1/2 G:G)^1/2 with G = grad v + grad v^T in cells; the square of the shear is the mean of a cell's four nodes. Oba, Otsuki (2025), (28).
 void shear_rate(const Grid& grid, const Rates& rates, Values& rate);
 
-/// The harmonic mean of the four cells around a node: along the surface of two fluids the shear stress is the same in both, so that the
-/// thinner one decides. An arithmetic mean would let grains drag the gas a thousand times too strongly, and no time step would be stable.
-inline double at_node(const double* viscosity, std::size_t node, std::size_t stride)
+/// Viscosities where stresses are: of normal stresses in cells, of the shear stress at nodes.
+struct Viscosities {
+	Values cells, nodes;
+
+	explicit Viscosities(const Grid& grid) : cells(grid.zeros()), nodes(grid.zeros()) {}
+};
+
+/// `work(index)` for all nodes of the grid, its edges too.
+template <class Work>
+void for_nodes(const Grid& grid, Work&& work)
 {
-	const double a = viscosity[node] * viscosity[node - 1], b = viscosity[node - stride] * viscosity[node - stride - 1];
-	const double sum_a = viscosity[node] + viscosity[node - 1], sum_b = viscosity[node - stride] + viscosity[node - stride - 1];
-	return 4 * a * b / (sum_a * b + sum_b * a);
+	for (int j = 0; j <= grid.ny; ++j)
+		for (std::size_t n = grid.at(0, j), end = n + std::size_t(grid.nx) + 1; n < end; ++n) work(n);
 }
 
-/// div(eta G) on faces, with `at_node`. `viscosity` must be positive and have ghosts; stresses are scratch.
-void viscous_force(const Grid& grid, const Rates& rates, const Values& viscosity, Rates& stresses, FaceValues& force);
+/// The mean of the four cells around a node. `cells` must have ghosts.
+inline double at_node(const Values& cells, std::size_t node, std::size_t stride)
+{
+	return 0.25 * (cells[node] + cells[node - 1] + cells[node - stride] + cells[node - stride - 1]);
+}
+
+/// The same shear rate at nodes; the squares of du/dx and dv/dy are means of a node's four cells.
+void shear_rate_at_nodes(const Grid& grid, const Rates& rates, Values& rate);
+
+/// div(eta G) on faces. `viscosities.cells` must have ghosts; `stresses` is scratch.
+void viscous_force(const Grid& grid, const Rates& rates, const Viscosities& viscosities, Rates& stresses, FaceValues& force);
 
 /// -div(v v) on faces, by means of neighbouring faces: conserves momentum, and energy but for the time step. `velocity` must have ghosts.
 void advection(const Grid& grid, const FaceValues& velocity, FaceValues& result);

@@ -81,9 +81,10 @@ TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids&
 	  rates(grid),
 	  stresses(grid),
 	  rate(grid.zeros()),
-	  viscosity(grid.zeros()),
+	  node_rate(grid.zeros()),
 	  density(grid.zeros()),
 	  scratch(grid.zeros()),
+	  viscosity(grid),
 	  over_density(zero_faces(grid)),
 	  advected(zero_faces(grid)),
 	  viscous(zero_faces(grid)),
@@ -198,22 +199,12 @@ void TwoPhaseFlow::advance(long steps)
 void TwoPhaseFlow::find_material()
 {
 	rates_of(g, now.velocity, rates);
-	shear_rate(g, rates, rate);
-	constexpr double least_rate = 1e-12;  // below it every fluid here is at its largest viscosity
-	std::visit(
-		[&](const auto& fluid) {
-			g.for_cells([&](int, int, std::size_t c) {
-				const double alpha = clamped(now.fraction[c]);
-				density[c] = material.density * alpha + material.gas_density * (1 - alpha);
-				double eta = material.largest_viscosity;
-				if (alpha > 0 && rate[c] > least_rate)
-					eta = std::min(eta, fluid.viscosity(rate[c], std::max(now.pressure[c], material.least_pressure)));
-				viscosity[c] = alpha * eta + (1 - alpha) * material.gas_viscosity;
-			});
-		},
-		material.rheology);
+	find_viscosity();
+	g.for_cells([&](int, int, std::size_t c) {
+		const double alpha = clamped(now.fraction[c]);
+		density[c] = material.density * alpha + material.gas_density * (1 - alpha);
+	});
 	fill_ghosts(g, density);
-	fill_ghosts(g, viscosity);
 	for_faces([&](const Values& rho, auto component, std::size_t f, std::size_t next) {
 		component(over_density)[f] = 2 / (rho[f] + rho[f - next]);
 	});
@@ -227,6 +218,37 @@ void TwoPhaseFlow::find_material()
 			over_density.x[g.at(g.nx, j)] = over_density.x[g.at(0, j)];
 		}
 	pressures.update(coefficients);
+}
+
+/// (26), (29) in cells, and at nodes from the shear rate and the mean pressure there: the shear stress over the pressure, mu(I), hardly
+/// changes with the rate, so that a viscosity between two cells that errs by a tenth would double the rate. A node beside a cell of gas
+/// alone is gas: the shear stress of both fluids at their surface is that of the gas, and faces in the gas would else feel the grains'.
+void TwoPhaseFlow::find_viscosity()
+{
+	shear_rate(g, rates, rate);
+	shear_rate_at_nodes(g, rates, node_rate);
+	extrapolate_ghosts(g, now.pressure);
+	constexpr double least_rate = 1e-12;  // below it every fluid here is at its largest viscosity
+	const std::size_t up = g.stride();
+	const Values& alpha = now.fraction;
+	std::visit(
+		[&](const auto& fluid) {
+			const auto mixed = [&](double part, double shear, double pressure) {
+				double eta = material.largest_viscosity;
+				if (part > 0 && shear > least_rate)
+					eta = std::min(eta, fluid.viscosity(shear, std::max(pressure, material.least_pressure)));
+				return part * eta + (1 - part) * material.gas_viscosity;
+			};
+			g.for_cells([&](int, int, std::size_t c) { viscosity.cells[c] = mixed(clamped(alpha[c]), rate[c], now.pressure[c]); });
+			for_nodes(g, [&](std::size_t n) {
+				const double a = alpha[n], b = alpha[n - 1], c = alpha[n - up], d_ = alpha[n - up - 1];
+				const double least = std::min(std::min(a, b), std::min(c, d_));
+				const double part = least > 0 ? clamped(4 / (1 / a + 1 / b + 1 / c + 1 / d_)) : 0;
+				viscosity.nodes[n] = mixed(part, node_rate[n], at_node(now.pressure, n, up));
+			});
+		},
+		material.rheology);
+	fill_ghosts(g, viscosity.cells);
 }
 
 /// A = -div(v v) and B = div(eta (grad v + grad v^T))/rho.
@@ -380,7 +402,7 @@ const Values& TwoPhaseFlow::present_shear_rate()
 const Values& TwoPhaseFlow::present_viscosity()
 {
 	find_material();
-	return viscosity;
+	return viscosity.cells;
 }
 
 Values TwoPhaseFlow::ill_posed()

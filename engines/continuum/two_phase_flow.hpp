@@ -128,13 +128,15 @@ private:
 	FullViscosity full;
 	Pressure pressures;
 	Rates rates, stresses;
-	Values rate, viscosity, density, scratch;
+	Values rate, node_rate, density, scratch;
+	Viscosities viscosity;
 	double right_side_size = 0;  ///< of the pressure's equation: what residuals are small against
 	FaceValues over_density, advected, viscous, given, predicted, change, inertia;
 
 	void check() const;
 	double nu_0() const;
 	void find_material();
+	void find_viscosity();
 	void find_forces();
 	void predict();
 	void predict_split();

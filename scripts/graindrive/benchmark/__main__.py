@@ -3,8 +3,8 @@
 usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
 
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
-  --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres);
-                without it all of them, in that order
+  --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres),
+                continuum; without it all of them, in that order
   --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache,
                 half as long again for lift190k
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
@@ -13,6 +13,8 @@ usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel N
 
 Spheres are those of the lift study: 20,000 and 190,000 settled, and the 20,000 flowing down 24 degrees. Their energies are
 compared after 300 steps, with friction and without it, before a ratio is printed.
+
+The continuum is the drum study's on 107^2 and 400^2 cells; its rates are cell-steps per second.
 
 One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
 whose kinetic energies differ after 300 steps (LIGGGHTS: the first portion) gets no ratio.
@@ -31,7 +33,8 @@ import tempfile
 import numpy as np
 
 from .. import engines
-from . import lammps, layout, liggghts
+from ..study import house, loaded
+from . import continuum, lammps, layout, liggghts
 from .scenes import SCENES, scene, with_restitution
 
 # Largest relative difference of kinetic energy then, by law. Hertz: the same arithmetic from the same
@@ -271,6 +274,9 @@ def portions(a_scene, quick):
 
 def measure(name, quick, threads):
     """Yield the rows of one scene."""
+    if name == continuum.NAME:
+        yield from continuum.measure(loaded(house()["drum"]), quick)
+        return
     a_scene, plan = scene(name), PLAN[name]
     rounds, steps = portions(a_scene, quick)
     with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
@@ -307,7 +313,7 @@ def main(arguments=None):
         prog="scripts/bench", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("--json", action="store_true")
-    parser.add_argument("--scene", choices=sorted(SCENES))
+    parser.add_argument("--scene", choices=sorted([*SCENES, continuum.NAME]))
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--kernel", choices=("avx512", "avx2", "portable"))
@@ -323,7 +329,7 @@ def main(arguments=None):
         if not shutil.which(chosen.lammps):
             parser.error(f"--lammps {chosen.lammps}: no such program")
         lammps.command = os.path.abspath(shutil.which(chosen.lammps))
-    names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else list(SCENES)
+    names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else [*SCENES, continuum.NAME]
     if not chosen.json:
         print(
             "scene          law              precis. threads kernel   peer             ours M/s   theirs   ratio",
