@@ -243,7 +243,7 @@ void expect_bagnold(double h, double tolerance)
 	const double angle = 0.29, depth = 20;
 	Fluids fluids = granular();
 	fluids.gas_density = 1e-3 * fluids.density;
-	fluids.gas_viscosity = 1e-2;  // thinner, it would fall past the grains
+	fluids.gas_viscosity = 1e-3;  // thicker, it would hold them back; thinner, it would fall past them
 	const Grid grid{ 4, int(25 / h), h, 0, 0, true };
 	FlowSettings how;
 	how.viscosity = Viscosity::full;

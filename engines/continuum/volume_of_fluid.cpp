@@ -10,21 +10,18 @@ namespace graindrive::continuum {
 
 namespace {
 
-constexpr double pure = 1e-9;  // a cell closer than that to empty or full has no surface
+constexpr double pure = 1e-6;  // a cell closer than that to empty or full has no surface
 
-double log_cosh(double x)
-{
-	x = std::abs(x);
-	return x + std::log1p(std::exp(-2 * x));  // less ln 2, which cancels
-}
-
-/// Integral of (1 + s tanh(beta (x - x_0)))/2 over the part of a cell of unit length that leaves it, with mean a.
+/// Integral of (1 + s tanh(beta (x - x_0)))/2 over the part of a cell of unit length that leaves it, with mean a. With
+/// B = exp(2 beta x_0), cosh(beta (1 - x_0))/cosh(beta (1 - c - x_0)) = exp(beta c) (1 + B q)/(1 + B q exp(2 beta c)), q = exp(-2 beta),
+/// and likewise at the cell's other end.
 double thinc(double a, double sign, double courant, double beta)
 {
-	const double full = sign > 0 ? 2 - 2 * a : 2 * a, rest = 2 - full;
-	const double x_0 = std::log(std::expm1(beta * full) / -std::expm1(-beta * rest)) / (2 * beta);
-	const double from = courant > 0 ? 1 - courant : 0, to = courant > 0 ? 1 : -courant;
-	return 0.5 * (std::abs(courant) + sign / beta * (log_cosh(beta * (to - x_0)) - log_cosh(beta * (from - x_0))));
+	const double full = sign > 0 ? 2 - 2 * a : 2 * a, rest = 2 - full, c = std::abs(courant);
+	const double B = std::expm1(beta * full) / -std::expm1(-beta * rest);
+	const double q = std::exp(-2 * beta), turned = std::exp((courant > 0 ? 2 : -2) * beta * c);
+	const double ratio = courant > 0 ? (1 + B * q) / (1 + B * q * turned) : (1 + B * turned) / (1 + B);
+	return 0.5 * (c + sign * (c + std::log(ratio) / beta));
 }
 
 }  // namespace
