@@ -114,7 +114,7 @@ class DrumParameters(StudyParameters):
     dynamic_friction: float = quantity(0.401, "-", "continuum: mu_2 of fast flow", gt=0)
     inertial_scale: float = quantity(0.133, "-", "continuum: I_0 of mu(I)", gt=0)
     largest_viscosity: float = quantity(
-        8000.0, "m sqrt(g/d)", "continuum: eta_max, of what rests", gt=0, lever=Lever(8e4, "lower")
+        8e4, "m sqrt(g/d)", "continuum: eta_max, of what rests; the paper's is 8000", gt=0, lever=Lever(8e5, "lower")
     )
     tolerance: float = quantity(
         1e-5,

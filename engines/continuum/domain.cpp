@@ -62,14 +62,30 @@ Domain::Domain(const Grid& grid, const Distance& distance, double half_width, co
 			open.x[grid.at(grid.nx, j)] = open.x[grid.at(0, j)];
 			wall.x[grid.at(grid.nx, j)] = wall.x[grid.at(0, j)];
 		}
-	grid.for_cells([&](int i, int j, std::size_t c) {
-		cell_open[c] = chi(grid.centre_x(i), grid.centre_y(j));
-		fluid[c] = any_open_face(grid, open, c);
-	});
+	grid.for_cells([&](int i, int j, std::size_t c) { cell_open[c] = chi(grid.centre_x(i), grid.centre_y(j)); });
 	if (std::none_of(cell_open.begin(), cell_open.end(), [](double part) { return part >= 1; }))
 		throw std::invalid_argument("no cell of the grid is wholly in the fluid; make the spacing smaller or the space larger");
 	fill_ghosts(grid, cell_open);
+	find_fluid(grid);
+}
+
+void Domain::find_fluid(const Grid& grid)
+{
+	grid.for_cells([&](int, int, std::size_t c) { fluid[c] = any_open_face(grid, open, c); });
 	fill_ghosts(grid, fluid);
+}
+
+Domain Domain::held(const Grid& grid, double power) const
+{
+	constexpr double closed = 1e-9;
+	Domain result = *this;
+	for (Values* part : { &result.open.x, &result.open.y, &result.cell_open })
+		for (double& chi : *part) {
+			const double left = chi < 1 ? std::pow(chi, power) : chi;
+			chi = left > closed ? left : 0;
+		}
+	result.find_fluid(grid);
+	return result;
 }
 
 }  // namespace graindrive::continuum

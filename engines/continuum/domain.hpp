@@ -31,6 +31,13 @@ struct Domain {
 	/// Where fluid reaches a closed edge of the grid, the edge is a wall at rest.
 	/// @throws std::invalid_argument as above, for a distance that is not finite, and where no cell is wholly in the fluid
 	Domain(const Grid& grid, const Distance& distance, double half_width, const WallMotion& motion);
+
+	/// The same with chi^power: what so many steps with chi do to a velocity, v -> chi v + (1 - chi) v_wall, one step then does.
+	/// Without that the wall would hold the fluid in its transition the less, the larger the time step is.
+	Domain held(const Grid& grid, double power) const;
+
+private:
+	void find_fluid(const Grid& grid);
 };
 
 }  // namespace graindrive::continuum

@@ -20,6 +20,11 @@ void require_positive(const char* name, double value)
 	throw std::invalid_argument(message.str());
 }
 
+Domain walls(const Grid& grid, const Domain& domain, const FlowSettings& how)
+{
+	return how.wall_time > 0 && how.time_step > 0 ? domain.held(grid, how.time_step / how.wall_time) : domain;
+}
+
 double clamped(double fraction) { return std::min(1.0, std::max(0.0, fraction)); }
 
 /// Mean of alpha over points of each cell.
@@ -71,12 +76,12 @@ void add_in_cells(const Grid& grid, const Values& what, Values& to)
 TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
 	const std::function<double(double, double)>& fraction)
 	: g(grid),
-	  d(domain),
+	  d(walls(grid, domain, settings)),
 	  material(fluids),
 	  how(settings),
-	  transport(grid, domain, settings.sharpness),
-	  split(grid, domain, settings.edge),
-	  full(grid, domain, settings.edge),
+	  transport(grid, d, settings.sharpness),
+	  split(grid, d, settings.edge),
+	  full(grid, d, settings.edge),
 	  pressures(grid, settings.pressure_solver),
 	  rates(grid),
 	  stresses(grid),
@@ -134,6 +139,8 @@ void TwoPhaseFlow::check() const
 	require_positive("the largest viscosity", material.largest_viscosity);
 	require_positive("the least pressure", material.least_pressure);
 	require_positive("the time step", how.time_step);
+	if (!(how.wall_time >= 0))
+		throw std::invalid_argument("wall_time must not be negative, got " + std::to_string(how.wall_time));
 	require_positive("the pressure's tolerance", how.tolerance);
 	require_positive("the viscosity's tolerance", how.viscous_tolerance);
 	require_positive("the implicit share of the viscosity", how.implicit_share);
@@ -167,6 +174,9 @@ double TwoPhaseFlow::stable_step() const
 
 void TwoPhaseFlow::set_time_step(double dt)
 {
+	if (how.wall_time > 0)
+		throw std::invalid_argument(
+			"the time step of a flow with a wall_time stays as it is, for the wall was made for it; make another flow");
 	const double before = how.time_step;
 	how.time_step = dt;
 	try {
@@ -239,7 +249,8 @@ void TwoPhaseFlow::find_viscosity()
 					eta = std::min(eta, fluid.viscosity(shear, std::max(pressure, material.least_pressure)));
 				return part * eta + (1 - part) * material.gas_viscosity;
 			};
-			g.for_cells([&](int, int, std::size_t c) { viscosity.cells[c] = mixed(clamped(alpha[c]), rate[c], now.pressure[c]); });
+			g.for_cells(
+				[&](int, int, std::size_t c) { viscosity.cells[c] = mixed(clamped(alpha[c]), rate[c], now.pressure[c]); });
 			for_nodes(g, [&](std::size_t n) {
 				const double a = alpha[n], b = alpha[n - 1], c = alpha[n - up], d_ = alpha[n - up - 1];
 				const double least = std::min(std::min(a, b), std::min(c, d_));

@@ -31,6 +31,7 @@ struct FlowSettings {
 	double implicit_share = 0.5;  ///< nu_0 over eta_gas/rho_gas + eta_max/rho (split only); the paper's is 1/2
 	double tolerance = 1e-5;      ///< of both pressures' residuals, against the right side of p's equation
 	double viscous_tolerance = 1e-6;
+	double wall_time = 0;    ///< the step in which the wall's transition acts once; 0: the time step, whatever it is
 	double sharpness = 3.5;  ///< see VolumeOfFluid
 	Edge edge = Edge::slips;
 	std::string pressure_solver;  ///< "" for the default
@@ -93,7 +94,8 @@ public:
 
 	/// The largest time step that the explicit part of the viscosity allows; infinite with `Viscosity::full`.
 	double stable_step() const;
-	/// Heard from the next step on. @throws std::invalid_argument as the constructor
+	/// Heard from the next step on. @throws std::invalid_argument as the constructor, and with a `wall_time`, for whose ratio to the time
+	/// step the wall was made
 	void set_time_step(double dt);
 
 	const Grid& grid() const { return g; }

@@ -2,8 +2,9 @@
 
 The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d, rho, g.
 Readings: the layer within the wall's transition belongs to the wall and is full of grains (the paper fills its lower half and
-lets it turn, so that a film of gas comes between wall and bed after half a turn); averages begin when the centre of mass has
-come to rest, after START_TURN at least.
+lets it turn, so that a film of gas comes between wall and bed after half a turn); eta_max is ten times the paper's, with which
+the bed creeps below the layer, by a tenth of Omega; the wall acts as with the paper's time step whatever continuum_dt is; averages
+begin when the centre of mass has come to rest, after START_TURN at least.
 
 `run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
@@ -28,6 +29,7 @@ GAS_DENSITY, GAS_VISCOSITY = 1e-3, 1e-6  # of those of the bed, the viscosity of
 LEAST_PRESSURE = 1e-5  # m g/d
 SHELL = 16  # cells around the drum
 TRANSITION = 2  # half width of the wall's transition, in cells
+WALL_TIME = 1e-4  # sqrt(d/g): the paper's time step; so the wall holds the bed alike with any
 START_TURN, MOST_TURN, WINDOW = 45.0, 180.0, 30.0  # degrees: before averages at least, at most, and their length
 BLOCKS = 8
 FEWEST_CELLS = 20
@@ -87,6 +89,7 @@ def flow_of(p):
             low_x=low,
             low_y=low,
             transition=TRANSITION,
+            wall_time=WALL_TIME,
             wall_spin=p.omega,
         ),
         **dict(rheology=p.rheology, static_friction=p.static_friction, dynamic_friction=p.dynamic_friction),
