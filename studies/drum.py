@@ -69,7 +69,7 @@ MOST_STARTS = 2  # times start_turn: then averages begin even if the flow still 
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
 OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # what may help the guard
-SERIES = quantities.units("series", "t turn centre_angle work torque", quantities.GRAIN)
+SERIES = quantities.units("series", "t turn centre_angle centre_x work torque", quantities.GRAIN)
 
 
 class DrumParameters(StudyParameters):
@@ -395,8 +395,12 @@ def row_of(p, march, drive, ids):
     """Return what is known of the drum now: time, turn [degrees], work done on the grains, their centre of mass' angle."""
     grains = scene.rows_of(ids)
     drum.require_inside(p.drum_diameter, grains)
-    angle = centre_angle(grains["x"], grains["y"], grains["r"] ** 2)
-    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), centre_angle=angle, work=float(drive.work))
+    mass = grains["r"] ** 2
+    centre = dict(
+        centre_angle=centre_angle(grains["x"], grains["y"], mass),
+        centre_x=float(np.average(grains["x"], weights=mass)),
+    )
+    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), work=float(drive.work), **centre)
 
 
 def series_row(p, columns):
