@@ -193,7 +193,7 @@ def build(p, grains, dt):
     with recording.overlap_advice(OVERLAP_KEYS):
         packed = drum.settled(recipe(p))
     drum.start()
-    wall = drum.add_wall(p.drum_diameter, p.wall_count, grains.density)
+    wall = drum.add_wall(p.drum_diameter, p.wall_count)
     ids = scene.add_disks(packed["x"], packed["y"], packed["r"], grains.density)
     O.dt = dt
     scene.run_as_asked(p, grains, gravity=1.0, between=[field_averager(p, dt), imposed_turn(p, wall)])

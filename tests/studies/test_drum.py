@@ -118,11 +118,10 @@ def test_frames_show_grains_and_wall(run, drum):
 
 def test_both_loops_turn_alike_until_chaos(drum, tmp_path):
     fast, slow = (carry_out(drum, tmp_path / loop, **SHORT, loop=loop) for loop in ("grain", "yade"))
-    early = fast["turn"] < 1
-    assert np.ptp(slow["centre_angle"][early]) > 0.5
-    assert np.abs(fast["centre_angle"] - slow["centre_angle"])[early].max() < 1e-6
-    # Work of the first rows is that of single contacts, and 1e-6 of its scale is round-off that collisions let grow.
-    assert np.abs(fast["work"] - slow["work"])[early].max() < 1e-6 * np.abs(slow["work"]).max()
+    early = fast["turn"] < 0.35  # 400 steps, 40 times as long as a contact; then round-off has grown to 1e-11
+    assert np.ptp(slow["centre_angle"][early]) > 0.1
+    assert np.abs(fast["centre_angle"] - slow["centre_angle"])[early].max() < 1e-9
+    assert np.abs(fast["work"] - slow["work"])[early].max() < 1e-9 * np.abs(slow["work"]).max()
 
 
 def test_an_interrupted_run_goes_on_as_if_it_had_not_been(drum, tmp_path, monkeypatch):
@@ -171,7 +170,7 @@ def test_speed_is_given_in_either_way(drum):
         (dict(angular_velocity=0.2), "centrifuged; lower angular_velocity or froude"),
         (dict(angular_velocity=6.28e-3, froude=3e-3), "both say how fast the drum turns; give one"),
         (dict(drum_diameter=1.0), "drum_diameter=1 d has no room .* at least 20 d"),
-        (dict(drum_diameter=1e6), "more than 10000000|bins, more than"),
+        (dict(drum_diameter=1e6, froude=1e-3), "more than 10000000|bins, more than"),
         (dict(wall_disks=200), r"wall_disks=200 leave gaps of 1.36 d, .* at least 262 are needed"),
         (dict(wall_disks=5000), "more than twice as many as touch; at most 942"),
         (dict(dt_factor=100), "time step 0.01 is over the critical"),
