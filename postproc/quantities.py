@@ -177,6 +177,7 @@ QUANTITIES = {
         **of("-", contacts="on the body", slipping="Magnus: contacts on the body that slip"),
         **of("work", work="wiggle, drum: done by the drive since the start"),
         **of("d", travel="Magnus: way of the body since the start"),
+        **of("length", centre_x="drum: x of the grains' centre of mass from the axis"),
         **of(
             "degrees",
             turn="drum: how far it has turned since the start",

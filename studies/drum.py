@@ -19,6 +19,10 @@ The grains are poured with a restitution of 0.5, and lie level to within 3 degre
 start_turn and the angle of the grains' centre of mass has not drifted by 0.5 degrees over the last third of it; they go over
 `turn`. Half a turn takes each grain once through the layer. Errors are those of eight blocks in time.
 
+Cost: a whole turn takes 2 pi/Omega, at the paper's step and Omega = 6.28e-3 1e7 steps. By the rates of one core (85 M
+particle-steps/s at D = 150, by estimate 70 at 450) that is 15 minutes at D = 150, 1.1 h at 300 and 2.7 h at 450; a fifth of it
+with dt_factor=5, still a sixth of the critical step. The demo turns the drum of 150 d by half a turn, a minute and a half.
+
     scripts/run drum                                              the demo
     yade -n -x studies/drum.py drum_diameter=300 froude=3e-3 scale=paper out=drum-300
     scripts/run drum help                                         all keys
@@ -69,7 +73,7 @@ MOST_STARTS = 2  # times start_turn: then averages begin even if the flow still 
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
 OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # what may help the guard
-SERIES = quantities.units("series", "t turn centre_angle work torque", quantities.GRAIN)
+SERIES = quantities.units("series", "t turn centre_angle centre_x work torque", quantities.GRAIN)
 
 
 class DrumParameters(StudyParameters):
@@ -86,8 +90,10 @@ class DrumParameters(StudyParameters):
     )
     froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: by angular_velocity", gt=0)
     filling: float = quantity(0.5, "-", "part of the drum that the bed fills", gt=0)
-    grains: Optional[int] = quantity(None, "-", "number of grains; auto: the paper's, or by filling", ge=1)
-    wall_disks: Optional[int] = quantity(None, "-", "disks of the wall; auto: the paper's, or as many as touch", ge=1)
+    grains: Optional[int] = quantity(None, "-", "number of grains; auto: the paper's, or by filling", ge=1, le=10**7)
+    wall_disks: Optional[int] = quantity(
+        None, "-", "disks of the wall; auto: the paper's, or as many as touch", ge=1, le=10**6
+    )
     friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
     restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
     stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
@@ -218,7 +224,7 @@ def build(p, grains, dt):
     with recording.overlap_advice(OVERLAP_KEYS):
         packed = drum.settled(recipe(p))
     drum.start()
-    wall = drum.add_wall(p.drum_diameter, p.wall_count, grains.density)
+    wall = drum.add_wall(p.drum_diameter, p.wall_count)
     ids = scene.add_disks(packed["x"], packed["y"], packed["r"], grains.density)
     O.dt = dt
     scene.run_as_asked(p, grains, gravity=1.0, between=[field_averager(p, dt), imposed_turn(p, wall)])
@@ -421,8 +427,12 @@ def row_of(p, march, drive, ids):
     """Return what is known of the drum now: time, turn [degrees], work done on the grains, their centre of mass' angle."""
     grains = scene.rows_of(ids)
     drum.require_inside(p.drum_diameter, grains)
-    angle = centre_angle(grains["x"], grains["y"], grains["r"] ** 2)
-    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), centre_angle=angle, work=float(drive.work))
+    mass = grains["r"] ** 2
+    centre = dict(
+        centre_angle=centre_angle(grains["x"], grains["y"], mass),
+        centre_x=float(np.average(grains["x"], weights=mass)),
+    )
+    return dict(t=march.time, turn=float(np.degrees(p.omega * march.time)), work=float(drive.work), **centre)
 
 
 def series_row(p, columns):

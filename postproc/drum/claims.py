@@ -17,10 +17,7 @@ NAMES = {"dem": "grains", "continuum": "continuum"}
 CONSISTENT = 0.1  # of u in the L2 norm: what we take "quantitatively consistent" and "data consolidation" to be
 RIGID = 0.05  # of Omega z
 PAPERS_FRACTION = 0.825
-PAPERS_INTERCEPT, PAPERS_SLOPE = (
-    0.11,
-    1.2,
-)  # of h/D against Fr; 1.1 is printed for the first, more than the drum's radius
+PAPERS_INTERCEPT, PAPERS_SLOPE = 0.11, 1.2  # of h/D against Fr; printed is 1.1, more than the drum's radius
 
 claim = partial(claim_on, dict(drum_diameter=("D", " d"), froude=("Fr", ""), model=("", "")))
 

@@ -16,9 +16,8 @@ from .material import SpringDashpotMaterial
 RECIPE = 1  # raise it when a drum of the same parameters comes out different
 CLEARANCE = 0.02  # [d] left between neighbours and to the wall where grains are placed
 STIR = 1.0  # [sqrt(g d)] speed of the grains where they are placed, which takes the memory of the lattice from the bed
-MOST_FILLING = (
-    0.7  # part of the drum that a loose lattice of grains of 1 to 1.2 d, as dense as a bed when it has fallen, can fill
-)
+WALL_MASS = 1e9  # [rho d^2] of the wall as a whole, so that a grain's contacts with it count the grain's mass alone
+MOST_FILLING = 0.7  # of the drum's area, as a bed: so much fits in as a loose lattice of grains of 1 to 1.2 d
 
 
 @dataclass(frozen=True)
@@ -70,11 +69,15 @@ def check(recipe):
             f"a drum of {recipe.diameter:g} d would hold {recipe.grains:.3g} grains, more than {packing.MOST_GRAINS};"
             " lower drum_diameter"
         )
-    if recipe.pitch < recipe.d_max + CLEARANCE:
-        raise UsageError(
-            f"{recipe.grains} grains of up to {recipe.d_max:g} d do not fit loosely into a drum of {recipe.diameter:g} d;"
-            " lower filling or grains"
-        )
+    lattice_of(recipe)
+
+
+def too_full(recipe):
+    """Return the UsageError that says that the grains have no room."""
+    return UsageError(
+        f"{recipe.grains} grains of up to {recipe.d_max:g} d do not fit loosely into a drum of {recipe.diameter:g} d;"
+        " lower filling or grains"
+    )
 
 
 def wall_places(diameter, disks):
@@ -83,11 +86,11 @@ def wall_places(diameter, disks):
     return diameter / 2 * np.cos(angle), diameter / 2 * np.sin(angle)
 
 
-def add_wall(diameter, disks, density):
+def add_wall(diameter, disks):
     """Add the wall of disks of diameter 1 as one clump with all motions blocked; return the clump's id."""
     beads = np.column_stack(wall_places(diameter, disks))
-    mass = disks * density * np.pi / 4
-    wall = SimpleNamespace(beads=beads, bead_radius=0.5, mass=mass, inertia=mass * (diameter**2 / 4 + 1 / 8))
+    inertia = WALL_MASS * (diameter**2 / 4 + 1 / 8)
+    wall = SimpleNamespace(beads=beads, bead_radius=0.5, mass=WALL_MASS, inertia=inertia)
     return scene.add_intruder(wall, 0.0, 0.0)
 
 
@@ -115,17 +118,13 @@ def place(recipe):
 def lattice_of(recipe):
     """Return (edge of the lattice, radius within which its sites lie) with room for all grains and their jitter."""
     pitch = recipe.pitch
-    while True:
+    while pitch >= recipe.d_max + CLEARANCE:
         reach = recipe.room - recipe.d_max / 2 - (pitch - recipe.d_max) / np.sqrt(2)
         n = np.arange(-np.ceil(reach / pitch), np.ceil(reach / pitch) + 1)
         if np.count_nonzero(np.hypot(*np.meshgrid(n, n)) * pitch <= reach) >= recipe.grains:
             return pitch, reach
         pitch *= 0.995
-        if pitch < recipe.d_max + CLEARANCE:
-            raise UsageError(
-                f"{recipe.grains} grains of up to {recipe.d_max:g} d do not fit loosely into a drum of"
-                f" {recipe.diameter:g} d; lower filling or grains"
-            )
+    raise too_full(recipe)
 
 
 def pour(recipe):
@@ -135,7 +134,7 @@ def pour(recipe):
 
     x, y, r = place(recipe)
     start()
-    add_wall(recipe.diameter, recipe.wall_disks, recipe.material.density)
+    add_wall(recipe.diameter, recipe.wall_disks)
     ids = scene.add_disks(x, y, r, recipe.material.density)
     stir = np.random.default_rng(recipe.seed + 1).normal(0, STIR / np.sqrt(2), (len(ids), 2))
     for id_, (vx, vy) in zip(ids, stir):
