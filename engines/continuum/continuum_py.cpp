@@ -85,18 +85,15 @@ boost::shared_ptr<TwoPhaseFlow> flow_of(const py::object& fraction, const py::ob
 		const int i = int(std::floor((x - grid.low_x) / grid.spacing)), j = int(std::floor((y - grid.low_y) / grid.spacing));
 		return filled[std::size_t(j) * std::size_t(grid.nx) + std::size_t(i)];
 	};
-	Domain domain(grid);
-	if (!solid.is_none()) {
-		const Described& described = py::extract<const Described&>(solid);
-		const geometry::Surface<3>& surface = *described.surface;
-		domain = Domain(
-			grid,
-			[&](double x, double y) {
-				return surface.nearest({ x, y, 0 }).distance;
-			},
-			words.transition * grid.spacing, words.wall);
-	}
-	return boost::make_shared<TwoPhaseFlow>(grid, domain, words.all_fluids(), words.all_settings(), fraction_at);
+	if (solid.is_none())
+		return boost::make_shared<TwoPhaseFlow>(grid, Domain(grid), words.all_fluids(), words.all_settings(), fraction_at);
+	const Described& described = py::extract<const Described&>(solid);
+	const geometry::Surface<3>& surface = *described.surface;
+	const Distance distance = [&](double x, double y) { return surface.nearest({ x, y, 0 }).distance; };
+	const double half_width = words.transition * grid.spacing;
+	const Domain domain(grid, distance, half_width, words.wall);
+	return boost::make_shared<TwoPhaseFlow>(grid, domain, words.all_fluids(), words.all_settings(), fraction_at,
+		WallLayer(grid, domain, distance, half_width));
 }
 
 py::object construct(const py::tuple& arguments, const py::dict& keywords)
@@ -227,9 +224,7 @@ void bind_continuum()
 			"1 where the dense fluid's equations are ill-posed, else 0")
 		.add_property("openness", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.domain().cell_open); }),
 			"chi: 1 in the fluid, 0 in the solid")
-		.add_property("area", &TwoPhaseFlow::area, "of the dense fluid in the open part of the cells")
-		.add_property("total_area", attribute([](TwoPhaseFlow& f) { return area_of(f.grid(), f.state().fraction); }),
-			"of the dense fluid in all cells: nothing changes it")
+		.add_property("area", &TwoPhaseFlow::area, "of the dense fluid in the cells that are wholly open: nothing changes it")
 		.add_property("part_times", &part_times, "wall time [s] of the parts of all steps so far")
 		.add_property("report", &report, "what the last step took")
 		.def("state", &state, "All that decides how the flow goes on: {name: array or number}.")

@@ -66,26 +66,45 @@ Domain::Domain(const Grid& grid, const Distance& distance, double half_width, co
 	if (std::none_of(cell_open.begin(), cell_open.end(), [](double part) { return part >= 1; }))
 		throw std::invalid_argument("no cell of the grid is wholly in the fluid; make the spacing smaller or the space larger");
 	fill_ghosts(grid, cell_open);
-	find_fluid(grid);
-}
-
-void Domain::find_fluid(const Grid& grid)
-{
 	grid.for_cells([&](int, int, std::size_t c) { fluid[c] = any_open_face(grid, open, c); });
 	fill_ghosts(grid, fluid);
 }
 
-Domain Domain::held(const Grid& grid, double power) const
+WallLayer::WallLayer(const Grid& grid, const Domain& domain, const Distance& distance, double half_width)
 {
-	constexpr double closed = 1e-9;
-	Domain result = *this;
-	for (Values* part : { &result.open.x, &result.open.y, &result.cell_open })
-		for (double& chi : *part) {
-			const double left = chi < 1 ? std::pow(chi, power) : chi;
-			chi = left > closed ? left : 0;
+	const double h = grid.spacing, inside = half_width + 0.75 * h;  // of that depth the four cells around a point are mostly fluid
+	grid.for_cells([&](int i, int j, std::size_t c) {
+		if (domain.cell_open[c] >= 1) return;
+		const double x = grid.centre_x(i), y = grid.centre_y(j), e = 0.25 * h;
+		double nx = distance(x + e, y) - distance(x - e, y), ny = distance(x, y + e) - distance(x, y - e);
+		const double length = std::hypot(nx, ny);
+		if (!(length > 0)) return;  // on the solid's own middle line: nothing is nearest
+		const double way = (inside - distance(x, y)) / length;
+		const double column = (x + way * nx - grid.low_x) / h - 0.5, row = (y + way * ny - grid.low_y) / h - 0.5;
+		const int left = int(std::floor(column)), below = int(std::floor(row));
+		if (left < 0 || below < 0 || left + 1 >= grid.nx || below + 1 >= grid.ny) return;
+		const double a = column - left, b = row - below;
+		const double share[4] = { (1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b };
+		Taken taken{ c, {}, {} };
+		double sum = 0;
+		for (int k = 0; k < 4; ++k) {
+			taken.from[k] = grid.at(left + k % 2, below + k / 2);
+			taken.weight[k] = domain.cell_open[taken.from[k]] >= 1 ? share[k] : 0;
+			sum += taken.weight[k];
 		}
-	result.find_fluid(grid);
-	return result;
+		if (sum < 1e-3) return;
+		for (double& weight : taken.weight) weight /= sum;
+		layer.push_back(taken);
+	});
+}
+
+void WallLayer::extend(Values& cells) const
+{
+	for (const Taken& taken : layer) {
+		double value = 0;
+		for (int k = 0; k < 4; ++k) value += taken.weight[k] * cells[taken.from[k]];
+		cells[taken.cell] = value;
+	}
 }
 
 }  // namespace graindrive::continuum

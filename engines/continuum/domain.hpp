@@ -31,13 +31,27 @@ struct Domain {
 	/// Where fluid reaches a closed edge of the grid, the edge is a wall at rest.
 	/// @throws std::invalid_argument as above, for a distance that is not finite, and where no cell is wholly in the fluid
 	Domain(const Grid& grid, const Distance& distance, double half_width, const WallMotion& motion);
+};
 
-	/// The same with chi^power: what so many steps with chi do to a velocity, v -> chi v + (1 - chi) v_wall, one step then does.
-	/// Without that the wall would hold the fluid in its transition the less, the larger the time step is.
-	Domain held(const Grid& grid, double power) const;
+/// What the cells within a wall's transition and behind it take over from the fluid beside them: the value found along the normal, where
+/// the transition begins. So a moving wall carries no film of either fluid through the other.
+class WallLayer {
+public:
+	/// None where nothing is solid.
+	WallLayer() = default;
+	/// `distance` as of the domain, smooth near the wall; `half_width` that of its transition.
+	WallLayer(const Grid& grid, const Domain& domain, const Distance& distance, double half_width);
+
+	/// Fills those cells; `cells` within the fluid must have their ghosts.
+	void extend(Values& cells) const;
 
 private:
-	void find_fluid(const Grid& grid);
+	struct Taken {
+		std::size_t cell;
+		std::size_t from[4];
+		double weight[4];  ///< of cells wholly in the fluid; their sum is 1
+	};
+	std::vector<Taken> layer;
 };
 
 }  // namespace graindrive::continuum

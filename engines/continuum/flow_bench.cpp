@@ -35,7 +35,7 @@ int main(int count, char** words)
 	fluids.gas_viscosity = 8e-3;
 	fluids.least_pressure = 1e-5;
 	TwoPhaseFlow flow(grid, domain, fluids, how,
-		[&](double x, double y) { return y < 0 || std::hypot(x, y) > D / 2 - 2 * spacing ? 1.0 : 0.0; });
+		[&](double x, double y) { return y < 0 ? 1.0 : 0.0; });
 	const double area = flow.area();
 	std::printf("stable step %g, area %.10g\n", flow.stable_step(), area);
 	const auto clock = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };

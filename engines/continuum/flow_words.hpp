@@ -28,7 +28,6 @@ struct FlowWords {
 		visit("periodic_x", periodic_x, "1: left and right edge are one; 0: they are closed");
 		visit("edge", edge, "slips or sticks: what closed edges do to the flow along them");
 		visit("transition", transition, "half width of the transition between fluid and solid, in cells");
-		visit("wall_time", settings.wall_time, "the step in which the wall's transition acts once; 0: the time step");
 		visit("wall_velocity_x", wall.velocity_x, "velocity of the solid");
 		visit("wall_velocity_y", wall.velocity_y, "velocity of the solid");
 		visit("wall_spin", wall.spin, "spin of the solid, counter-clockwise");

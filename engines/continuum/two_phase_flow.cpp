@@ -20,11 +20,6 @@ void require_positive(const char* name, double value)
 	throw std::invalid_argument(message.str());
 }
 
-Domain walls(const Grid& grid, const Domain& domain, const FlowSettings& how)
-{
-	return how.wall_time > 0 && how.time_step > 0 ? domain.held(grid, how.time_step / how.wall_time) : domain;
-}
-
 double clamped(double fraction) { return std::min(1.0, std::max(0.0, fraction)); }
 
 /// Mean of alpha over points of each cell.
@@ -74,11 +69,13 @@ void add_in_cells(const Grid& grid, const Values& what, Values& to)
 }  // namespace
 
 TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
-	const std::function<double(double, double)>& fraction)
+	const std::function<double(double, double)>& fraction, const WallLayer& wall_layer)
 	: g(grid),
-	  d(walls(grid, domain, settings)),
+	  d(domain),
 	  material(fluids),
 	  how(settings),
+	  layer(wall_layer),
+	  wholly_open(grid.zeros()),
 	  transport(grid, d, settings.sharpness),
 	  split(grid, d, settings.edge),
 	  full(grid, d, settings.edge),
@@ -99,7 +96,9 @@ TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids&
 	  inertia(zero_faces(grid))
 {
 	check();
+	g.for_cells([&](int, int, std::size_t c) { wholly_open[c] = d.cell_open[c] >= 1; });
 	now.fraction = painted(g, fraction);
+	layer.extend(now.fraction);
 	fill_ghosts(g, now.fraction);
 	now.velocity = now.advection_before = zero_faces(g);
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t) {
@@ -139,8 +138,6 @@ void TwoPhaseFlow::check() const
 	require_positive("the largest viscosity", material.largest_viscosity);
 	require_positive("the least pressure", material.least_pressure);
 	require_positive("the time step", how.time_step);
-	if (!(how.wall_time >= 0))
-		throw std::invalid_argument("wall_time must not be negative, got " + std::to_string(how.wall_time));
 	require_positive("the pressure's tolerance", how.tolerance);
 	require_positive("the viscosity's tolerance", how.viscous_tolerance);
 	require_positive("the implicit share of the viscosity", how.implicit_share);
@@ -174,9 +171,6 @@ double TwoPhaseFlow::stable_step() const
 
 void TwoPhaseFlow::set_time_step(double dt)
 {
-	if (how.wall_time > 0)
-		throw std::invalid_argument(
-			"the time step of a flow with a wall_time stays as it is, for the wall was made for it; make another flow");
 	const double before = how.time_step;
 	how.time_step = dt;
 	try {
@@ -387,7 +381,29 @@ void TwoPhaseFlow::project()
 	fill_ghosts(g, now.potential);
 }
 
-void TwoPhaseFlow::move_surface() { transport.advect(now.fraction, now.velocity, how.time_step, now.steps % 2 == 0); }
+/// A wall is stairs on the grid, over which the fluid is carried out and in: what that changes of the area is given back.
+void TwoPhaseFlow::move_surface()
+{
+	const double before = area();
+	transport.advect(now.fraction, now.velocity, how.time_step, now.steps % 2 == 0);
+	give_back(before - area());
+	layer.extend(now.fraction);
+	fill_ghosts(g, now.fraction);
+}
+
+/// Spreads an area over the cells at the surface, by alpha (1 - alpha).
+void TwoPhaseFlow::give_back(double area)
+{
+	const auto room = [&](std::size_t c) {
+		const double alpha = clamped(now.fraction[c]);
+		return wholly_open[c] * alpha * (1 - alpha);
+	};
+	double sum = 0;
+	g.for_cells([&](int, int, std::size_t c) { sum += room(c); });
+	if (sum <= 0) return;
+	const double share = area / (g.spacing * g.spacing * sum);
+	g.for_cells([&](int, int, std::size_t c) { now.fraction[c] += share * room(c); });
+}
 
 void TwoPhaseFlow::require_followed()
 {

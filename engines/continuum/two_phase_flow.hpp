@@ -31,7 +31,6 @@ struct FlowSettings {
 	double implicit_share = 0.5;  ///< nu_0 over eta_gas/rho_gas + eta_max/rho (split only); the paper's is 1/2
 	double tolerance = 1e-5;      ///< of both pressures' residuals, against the right side of p's equation
 	double viscous_tolerance = 1e-6;
-	double wall_time = 0;    ///< the step in which the wall's transition acts once; 0: the time step, whatever it is
 	double sharpness = 3.5;  ///< see VolumeOfFluid
 	Edge edge = Edge::slips;
 	std::string pressure_solver;  ///< "" for the default
@@ -86,7 +85,7 @@ public:
 	/// @throws std::invalid_argument for densities, viscosities, steps and tolerances that are not positive, for a gas denser than the
 	/// fluid, and for a time step above `stable_step`
 	TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
-		const std::function<double(double x, double y)>& fraction);
+		const std::function<double(double x, double y)>& fraction, const WallLayer& wall_layer = {});
 
 	/// @throws std::runtime_error where a flow leaves what the scheme can follow, saying why and what to do
 	void step();
@@ -94,8 +93,7 @@ public:
 
 	/// The largest time step that the explicit part of the viscosity allows; infinite with `Viscosity::full`.
 	double stable_step() const;
-	/// Heard from the next step on. @throws std::invalid_argument as the constructor, and with a `wall_time`, for whose ratio to the time
-	/// step the wall was made
+	/// Heard from the next step on. @throws std::invalid_argument as the constructor
 	void set_time_step(double dt);
 
 	const Grid& grid() const { return g; }
@@ -113,8 +111,8 @@ public:
 	const Values& present_viscosity();
 	/// 1 in cells of the dense fluid where its equations are ill-posed, else 0.
 	Values ill_posed();
-	/// Area of the dense fluid within the open part of the cells.
-	double area() const { return area_of(g, now.fraction, &d.cell_open); }
+	/// Area of the dense fluid in the cells that are wholly open: nothing changes it.
+	double area() const { return area_of(g, now.fraction, &wholly_open); }
 
 private:
 	Grid g;
@@ -125,6 +123,8 @@ private:
 	StepReport last;
 	PartTimes times;
 
+	WallLayer layer;
+	Values wholly_open;
 	VolumeOfFluid transport;
 	SplitViscosity split;
 	FullViscosity full;
@@ -147,6 +147,7 @@ private:
 	void find_pressure();
 	void set_pressure_level();
 	void move_surface();
+	void give_back(double area);
 	void require_followed();
 	/// `along(f, neighbour)` for every free face: the work of both directions in one place
 	template <class Work>

@@ -1,10 +1,9 @@
 """The continuum in a drum, model=continuum of the drum study: the flow, its steady state, and the fields that it leaves.
 
 The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d, rho, g.
-Readings: the layer within the wall's transition belongs to the wall and is full of grains (the paper fills its lower half and
-lets it turn, so that a film of gas comes between wall and bed after half a turn); eta_max is ten times the paper's, with which
-the bed creeps below the layer, by a tenth of Omega; the wall acts as with the paper's time step whatever continuum_dt is; averages
-begin when the centre of mass has come to rest, after START_TURN at least.
+Readings: within the wall's transition there is what lies beside it (the paper lets its layer turn with the wall, and that carries
+grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed creeps by a tenth of Omega
+below the layer; averages begin when the centre of mass has come to rest, after START_TURN at least.
 
 `run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
@@ -29,7 +28,6 @@ GAS_DENSITY, GAS_VISCOSITY = 1e-3, 1e-6  # of those of the bed, the viscosity of
 LEAST_PRESSURE = 1e-5  # m g/d
 SHELL = 16  # cells around the drum
 TRANSITION = 2  # half width of the wall's transition, in cells
-WALL_TIME = 1e-4  # sqrt(d/g): the paper's time step; so the wall holds the bed alike with any
 START_TURN, MOST_TURN, WINDOW = 45.0, 180.0, 30.0  # degrees: before averages at least, at most, and their length
 BLOCKS = 8
 FEWEST_CELLS = 20
@@ -75,9 +73,9 @@ def flow_of(p):
     count = p.cells + 2 * SHELL
     low = -count * spacing / 2
     x = centres(low, spacing, count)
-    radius, level = np.hypot(x[None, :], x[:, None]), level_of(p)
+    level = level_of(p)
     below = np.clip((level - x[:, None]) / spacing + 0.5, 0, 1)  # the part of a cell that lies below the level
-    fraction = np.where(radius > p.drum_diameter / 2 - TRANSITION * spacing, 1.0, np.broadcast_to(below, radius.shape))
+    fraction = np.repeat(below, count, axis=1)
     density, largest = BED_FRACTION, p.largest_viscosity * GRAIN_MASS
     return TwoPhaseFlow(
         fraction,
@@ -89,7 +87,6 @@ def flow_of(p):
             low_x=low,
             low_y=low,
             transition=TRANSITION,
-            wall_time=WALL_TIME,
             wall_spin=p.omega,
         ),
         **dict(rheology=p.rheology, static_friction=p.static_friction, dynamic_friction=p.dynamic_friction),
@@ -173,7 +170,7 @@ def record(p, folder, march, stage, before, going_on):
     means = FieldMeans(BLOCKS, flow.fraction.shape)
     track = Record(folder if going_on else NotResumed, means)
     window, first_possible, last_possible = (rows_of(p, turn) for turn in (WINDOW, START_TURN, MOST_TURN))
-    area = flow.total_area
+    area = flow.area
 
     def sample(_done):
         track.append(row_of(p, march))
@@ -241,7 +238,7 @@ def keep(p, folder, march, track, means, area, stage):
     folder.summarize(
         continuum_steps=flow.steps,
         ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
-        continuum_area_drift=float(flow.total_area / area - 1),
+        continuum_area_drift=float(flow.area / area - 1),
         continuum_steady=int(
             is_steady(
                 columns["turn"][: stage["average_row"] + 1],
