@@ -37,7 +37,8 @@ protected:
 			omega = product_of(t, r) / product_of(t, t);
 			add(x, omega, z);
 			add(r, -omega, t);
-			if (product_of(r, r) <= target) return done + 1;
+			const double rr = product_of(r, r);
+			if (rr <= target || stalled(rr)) return done + 1;
 		}
 		return limit;
 	}

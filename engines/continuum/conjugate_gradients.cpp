@@ -21,7 +21,8 @@ protected:
 			const double curvature = matrix.turn_and_multiply(z, done > 0 ? rz / rz_before : 0, direction, product);
 			if (!(rz > 0 && curvature > 0)) return done + 1;  // rounding has eaten what was left
 			++done;
-			if (go(rz / curvature) <= target) break;
+			const double rr = go(rz / curvature);
+			if (rr <= target || stalled(rr)) break;
 			rz_before = rz;
 		}
 		return done;

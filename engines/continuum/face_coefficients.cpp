@@ -16,14 +16,17 @@ using geometry::require;
 
 void check_sizes(const FaceCoefficients& b)
 {
-	require(b.nx > 0 && b.ny > 0, "a grid needs at least one cell each way", std::to_string(b.nx) + " x " + std::to_string(b.ny),
-		"give nx and ny > 0");
-	geometry::require_positive("the spacing of the grid", b.spacing);
+	const auto refuse = [](const char* rule, const auto& value, const char* way_out) { require(false, rule, value, way_out); };
+	if (b.nx < 1 || b.ny < 1)
+		refuse(
+			"a grid needs at least one cell each way", std::to_string(b.nx) + " x " + std::to_string(b.ny), "give nx and ny > 0");
+	if (!(b.spacing > 0 && std::isfinite(b.spacing)))
+		refuse("the spacing of the grid must be positive and finite", b.spacing, "give a length > 0");
 	const std::size_t nx = b.nx, ny = b.ny;
-	require(b.x.size() == (nx + 1) * ny, "there must be (nx + 1) ny coefficients on x-faces", b.x.size(),
-		"make their array fit the grid");
-	require(b.y.size() == nx * (ny + 1), "there must be nx (ny + 1) coefficients on y-faces", b.y.size(),
-		"make their array fit the grid");
+	if (b.x.size() != (nx + 1) * ny)
+		refuse("there must be (nx + 1) ny coefficients on x-faces", b.x.size(), "make them fit the grid");
+	if (b.y.size() != nx * (ny + 1))
+		refuse("there must be nx (ny + 1) coefficients on y-faces", b.y.size(), "make them fit the grid");
 }
 
 // The largest of the numbers; negative if one of them is not a finite number >= 0.

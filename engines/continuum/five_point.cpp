@@ -59,8 +59,10 @@ void for_products(const FivePoint& a, const Field<double>& field, int y, Work&& 
 		const NeighbourRows at(a.grid(), y, parity);
 		for (int k = a.spans()[y].first; k < a.spans()[y].last; k += lanes) {
 			const Pack<double> here = pack(u + at.here + k);
-			work(at.here + k, (pack(e + at.here + k) * (here - pack(u + at.east + k)) + pack(e + at.west + k) * (here - pack(u + at.west + k))) +
-								  (pack(n + at.here + k) * (here - pack(u + at.north + k)) + pack(n + at.south + k) * (here - pack(u + at.south + k))));
+			work(at.here + k, (pack(e + at.here + k) * (here - pack(u + at.east + k)) +
+								  pack(e + at.west + k) * (here - pack(u + at.west + k))) +
+								  (pack(n + at.here + k) * (here - pack(u + at.north + k)) +
+									  pack(n + at.south + k) * (here - pack(u + at.south + k))));
 		}
 	}
 }
@@ -79,7 +81,8 @@ double FivePoint::turn_and_multiply(const Field<double>& z, double share, Field<
 	Pack<double> sum = {};
 	for (int y = 0; y <= shape.ny; ++y) {  // a row is turned before its lower neighbour is multiplied
 		if (y < shape.ny)
-			for_row(shape, spans(), y, [&](std::size_t i) { pack(u.data() + i) = pack(z.data() + i) + share * pack(u.data() + i); });
+			for_row(
+				shape, spans(), y, [&](std::size_t i) { pack(u.data() + i) = pack(z.data() + i) + share * pack(u.data() + i); });
 		if (y > 0) multiply_row(u, product, y - 1, sum);
 	}
 	return sum_of<double>(sum);

@@ -16,7 +16,7 @@ void KrylovSolver::update(const FaceCoefficients& b)
 {
 	const bool new_shape = matrix.update(b);
 	if (new_shape) {
-		x = r = f = Field<double>(matrix.grid());
+		x = best = r = f = Field<double>(matrix.grid());
 		row.resize(b.nx);
 		mean.reserve(matrix.parts().count());
 		reshape(matrix.grid());
@@ -33,12 +33,22 @@ SolveReport KrylovSolver::solve(const std::vector<double>& rhs, std::vector<doub
 	if (ff == 0) x.clear();
 	double rr = matrix.residual(f, x, r);
 	if (!std::isfinite(rr)) refuse_not_finite("the first guess of the pressure", p);
-	// Rounding parts the residual of the iteration from the true one: where that matters, the iteration starts again from the true one.
 	const int limit = 1000 + 20 * (matrix.grid().nx + matrix.grid().ny);
-	double best = HUGE_VAL;
-	while (rr > target && rr < 0.25 * best && report.iterations < limit) {
-		best = rr;
-		report.iterations += iterate(target, limit - report.iterations);
+	// Rounding parts the residual of the iteration from the true one: after eight decades it starts again from the true one.
+	double before = HUGE_VAL;
+	bool again = false;
+	while (rr > target && rr < 0.25 * before && report.iterations < limit) {
+		if (before < HUGE_VAL) again = true, best = x;
+		before = least_rr = rr;
+		since_least = 0;
+		report.iterations += iterate(std::max(target, 1e-16 * rr), limit - report.iterations);
+		rr = matrix.residual(f, x, r);
+	}
+	if (rr > before) {  // nothing but rounding was left to work on
+		if (again)
+			x = best;
+		else
+			load_guess(p);
 		rr = matrix.residual(f, x, r);
 	}
 	preconditioner->took(report.iterations);
@@ -51,16 +61,25 @@ SolveReport KrylovSolver::solve(const std::vector<double>& rhs, std::vector<doub
 	throw std::runtime_error(message.str());
 }
 
+bool KrylovSolver::stalled(double rr)
+{
+	since_least = rr < least_rr ? 0 : since_least + 1;
+	least_rr = std::min(least_rr, rr);
+	return since_least > 100 + 2 * (matrix.grid().nx + matrix.grid().ny);
+}
+
 void KrylovSolver::check(const std::vector<double>& rhs, const std::vector<double>& p, double relative_tolerance) const
 {
 	if (matrix.grid().nx == 0) throw std::logic_error("a pressure solver needs coefficients first; call update before solve");
 	const std::size_t n = std::size_t(matrix.grid().nx) * matrix.grid().ny;
-	require(rhs.size() == n, "the right side must have a number for each of the " + std::to_string(n) + " cells", rhs.size(),
-		"make it fit the grid");
-	require(p.size() == n, "the first guess must have a number for each of the " + std::to_string(n) + " cells", p.size(),
-		"make it fit the grid, 0 where nothing is known");
-	require(relative_tolerance > 0 && relative_tolerance < 1, "the relative tolerance must lie between 0 and 1",
-		relative_tolerance, "try 1e-5");
+	const auto refuse = [&](const char* what, std::size_t size) {
+		require(false, std::string(what) + " must have a number for each of the " + std::to_string(n) + " cells", size,
+			"make it fit the grid");
+	};
+	if (rhs.size() != n) refuse("the right side of the pressure", rhs.size());
+	if (p.size() != n) refuse("the first guess of the pressure", p.size());
+	if (relative_tolerance > 0 && relative_tolerance < 1) return;
+	require(false, "the relative tolerance must lie between 0 and 1", relative_tolerance, "try 1e-5");
 }
 
 void KrylovSolver::refuse_not_finite(const char* what, const std::vector<double>& numbers) const

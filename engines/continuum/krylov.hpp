@@ -17,6 +17,9 @@ protected:
 	/// Improves x, whose residual is r, until r r <= target; at most `limit` iterations. Returns how many it took.
 	virtual int iterate(double target, int limit) = 0;
 
+	/// True if r r has found no new minimum for so long that nothing but rounding can be left.
+	bool stalled(double rr);
+
 	FivePoint matrix;
 	std::unique_ptr<Preconditioner> preconditioner;
 	Field<double> x, r;
@@ -28,8 +31,10 @@ private:
 	void store(std::vector<double>& p);
 	void refuse_not_finite(const char* what, const std::vector<double>& numbers) const;
 
-	Field<double> f;
+	Field<double> f, best;
 	std::vector<double> mean, row;
+	double least_rr = 0;
+	int since_least = 0;
 };
 
 std::unique_ptr<PressureSolver> make_conjugate_gradients(std::unique_ptr<Preconditioner> preconditioner);

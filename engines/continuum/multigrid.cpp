@@ -106,12 +106,13 @@ void restrict_row(const Links& a, const double* rest, CoarseSide& to, int y)
 	const Interpolation& p = to.p;
 	const double *here = rest + a.grid->offset(2 * y, 0), *beside = rest + a.grid->offset(2 * y, 1),
 				 *above = rest + a.grid->offset(2 * y + 1, 1), *below = rest + a.grid->offset(2 * y - 1, 1);
-	const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y), *south_east = p.south_east.row(y),
-				 *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
+	const double *west = p.west.row(y), *east = p.east.row(y), *south_west = p.south_west.row(y),
+				 *south_east = p.south_east.row(y), *north_west = p.north_west.row(y - 1), *north_east = p.north_east.row(y - 1);
 	double* sums = to.plain.row(y);
 	for (int k = (*a.spans)[2 * y].first; k < (*a.spans)[2 * y].last; k += lanes) {
-		Lanes sum = pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
-									   (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
+		Lanes sum =
+			pack(here + k) + ((pack(south_west + k) * pack(above + k) + pack(south_east + k - 1) * pack(above + k - 1)) +
+								 (pack(north_west + k) * pack(below + k) + pack(north_east + k - 1) * pack(below + k - 1)));
 		if constexpr (rows) sum += pack(west + k) * pack(beside + k) + pack(east + k - 1) * pack(beside + k - 1);
 		pack(sums + k) = sum;
 	}
@@ -130,16 +131,18 @@ void correct(const Links& a, const Interpolation& p, const PlainField& correctio
 		double *here = u + a.grid->offset(y, 0), *beside = u + a.grid->offset(y, 1);
 		for (int k = span.first; k < span.last; k += lanes) {
 			pack(here + k) += pack(c + k);
-			if constexpr (rows) pack(beside + k) += pack(p.west.row(coarse) + k) * pack(c + k) + pack(p.east.row(coarse) + k) * pack(c + k + 1);
+			if constexpr (rows)
+				pack(beside + k) += pack(p.west.row(coarse) + k) * pack(c + k) + pack(p.east.row(coarse) + k) * pack(c + k + 1);
 		}
 		return;
 	}
-	const double *above = correction.row(coarse + 1), *south_west = p.south_west.row(coarse), *south_east = p.south_east.row(coarse),
-				 *north_west = p.north_west.row(coarse), *north_east = p.north_east.row(coarse);
+	const double *above = correction.row(coarse + 1), *south_west = p.south_west.row(coarse),
+				 *south_east = p.south_east.row(coarse), *north_west = p.north_west.row(coarse),
+				 *north_east = p.north_east.row(coarse);
 	double* middle = u + a.grid->offset(y, 1);
 	for (int k = span.first; k < span.last; k += lanes)
 		pack(middle + k) += (pack(south_west + k) * pack(c + k) + pack(south_east + k) * pack(c + k + 1)) +
-							(pack(north_west + k) * pack(above + k) + pack(north_east + k) * pack(above + k + 1));
+		                    (pack(north_west + k) * pack(above + k) + pack(north_east + k) * pack(above + k + 1));
 }
 
 // Half a cycle goes through the rows once: each colour follows the one before it as closely as its neighbours allow, so that a row is

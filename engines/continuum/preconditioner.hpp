@@ -24,8 +24,6 @@ public:
 std::unique_ptr<Preconditioner> make_jacobi_preconditioner();
 /// The Cholesky factor of an older matrix.
 std::unique_ptr<Preconditioner> make_cholesky_preconditioner();
-/// One density in the whole box.
-std::unique_ptr<Preconditioner> make_cosine_preconditioner();
 /// A cycle of multigrid.
 std::unique_ptr<Preconditioner> make_multigrid_preconditioner();
 

@@ -16,7 +16,6 @@ struct Named {
 const Named table[] = {
 	{ "multigrid", [] { return make_conjugate_gradients(make_multigrid_preconditioner()); } },
 	{ "cholesky", [] { return make_conjugate_gradients(make_cholesky_preconditioner()); } },
-	{ "cosine", [] { return make_conjugate_gradients(make_cosine_preconditioner()); } },
 	{ "jacobi", [] { return make_conjugate_gradients(make_jacobi_preconditioner()); } },
 	{ "bicgstab", [] { return make_bicgstab(make_jacobi_preconditioner()); } },
 };
