@@ -85,26 +85,21 @@ WallLayer::WallLayer(const Grid& grid, const Domain& domain, const Distance& dis
 		if (left < 0 || below < 0 || left + 1 >= grid.nx || below + 1 >= grid.ny) return;
 		const double a = column - left, b = row - below;
 		const double share[4] = { (1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b };
-		Taken taken{ c, {}, {} };
-		double sum = 0;
+		double most = 1e-3;
+		std::size_t from = c;
 		for (int k = 0; k < 4; ++k) {
-			taken.from[k] = grid.at(left + k % 2, below + k / 2);
-			taken.weight[k] = domain.cell_open[taken.from[k]] >= 1 ? share[k] : 0;
-			sum += taken.weight[k];
+			const std::size_t other = grid.at(left + k % 2, below + k / 2);
+			if (domain.cell_open[other] < 1 || share[k] <= most) continue;
+			most = share[k];
+			from = other;
 		}
-		if (sum < 1e-3) return;
-		for (double& weight : taken.weight) weight /= sum;
-		layer.push_back(taken);
+		if (from != c) layer.push_back({ c, from });
 	});
 }
 
 void WallLayer::extend(Values& cells) const
 {
-	for (const Taken& taken : layer) {
-		double value = 0;
-		for (int k = 0; k < 4; ++k) value += taken.weight[k] * cells[taken.from[k]];
-		cells[taken.cell] = value;
-	}
+	for (const Taken& taken : layer) cells[taken.cell] = cells[taken.from];
 }
 
 }  // namespace graindrive::continuum

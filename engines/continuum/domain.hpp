@@ -33,8 +33,8 @@ struct Domain {
 	Domain(const Grid& grid, const Distance& distance, double half_width, const WallMotion& motion);
 };
 
-/// What the cells within a wall's transition and behind it take over from the fluid beside them: the value found along the normal, where
-/// the transition begins. So a moving wall carries no film of either fluid through the other.
+/// What the cells within a wall's transition and behind it take over from the fluid beside them: the value of the cell that is found along
+/// the normal, where the transition begins; of one, for means would smear a surface. So a moving wall carries no film of either fluid through the other.
 class WallLayer {
 public:
 	/// None where nothing is solid.
@@ -47,9 +47,7 @@ public:
 
 private:
 	struct Taken {
-		std::size_t cell;
-		std::size_t from[4];
-		double weight[4];  ///< of cells wholly in the fluid; their sum is 1
+		std::size_t cell, from;
 	};
 	std::vector<Taken> layer;
 };
