@@ -61,7 +61,7 @@ GRAIN_MASS = np.pi / 4  # m, of a disk of d [rho d^2]
 TANGENTIAL_RATIO = 2 / 7  # k_t/k_n
 PAPERS_GRAINS = {150.0: 7700, 300.0: 30600, 450.0: 69200}  # D: N, at half filling
 PAPERS_WALL = {150.0: 475, 300.0: 632, 450.0: 946}  # D: N_w
-PAPERS_OMEGA = 6.28e-3  # sqrt(g/d), of its Figs. 2, 3(a) and 8
+PAPERS_DRUM, PAPERS_OMEGA = 150.0, 6.28e-3  # d, sqrt(g/d), of its Figs. 2 and 8
 BED_FRACTION = 0.828  # solid fraction at which the paper's grains fill half of the drum, mean over its three D
 WIDEST_GAP = 0.8  # [d] between disks of the wall; a grain of 1 d must not come through
 SMALLEST_DRUM = 20  # d
@@ -86,7 +86,10 @@ class DrumParameters(StudyParameters):
     )
     drum_diameter: float = quantity(150.0, "d", "D of the circle on which the wall's disks lie", gt=0)
     angular_velocity: Optional[float] = quantity(
-        None, "sqrt(g/d)", f"Omega, counter-clockwise; auto: by froude, or {PAPERS_OMEGA:g} without", gt=0
+        None,
+        "sqrt(g/d)",
+        f"Omega, counter-clockwise; auto: by froude, else {PAPERS_OMEGA:g} sqrt({PAPERS_DRUM:g} d/D)",
+        gt=0,
     )
     froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: by angular_velocity", gt=0)
     filling: float = quantity(0.5, "-", "part of the drum that the bed fills", gt=0)
@@ -137,7 +140,9 @@ class DrumParameters(StudyParameters):
         """Angular velocity of the drum [sqrt(g/d)]."""
         if self.angular_velocity is not None:
             return self.angular_velocity
-        return PAPERS_OMEGA if self.froude is None else float(np.sqrt(2 * self.froude / self.drum_diameter))
+        if self.froude is not None:
+            return float(np.sqrt(2 * self.froude / self.drum_diameter))
+        return PAPERS_OMEGA * float(np.sqrt(PAPERS_DRUM / self.drum_diameter))
 
     @property
     def count(self):
@@ -176,7 +181,7 @@ class DrumParameters(StudyParameters):
 
 
 PRESETS = {
-    "smoke": dict(drum_diameter=40, froude=3e-3, start_turn=60, turn=90, dt_factor=5),
+    "smoke": dict(drum_diameter=40, start_turn=60, turn=90, dt_factor=5),
     "demo": dict(start_turn=90, turn=90, dt_factor=5),
     "paper": {},
 }

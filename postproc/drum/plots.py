@@ -99,6 +99,8 @@ def thickness(_campaign, rows, claims):
     left.set(xlabel="Ω [√(g/d)]", ylabel="h [d]", ylim=(0, None))
     middle.set(xlabel="Fr", ylabel="h/D", ylim=(0, None))
     right.set(xlabel="Fr", ylabel="angle of the surface [degrees]", ylim=(0, None))
+    for panel in (left, middle, right):
+        panel.locator_params(axis="x", nbins=4)
     middle.legend(fontsize=6)
     return figure
 
