@@ -233,12 +233,16 @@ def recipes(p, body):
     return bed, sphere_bed.Lid(p.lid_density * DENSITY, p.lid_turns, p.bulk_gravity)
 
 
-def build(p, body, dt):
-    """Put the bed at rest, its lid, the body, drives and measures into YADE; return ids and what the bed weighs."""
+def build(p, body, dt, change=None):
+    """Put the bed at rest, its lid, the body, drives and measures into YADE; return ids and what the bed weighs.
+
+    `change(bed, found)`, if given, returns what is taken in place of the bed at rest `found` (`sphere_bed.at_rest`).
+    """
     from yade import O
 
     bed, lid = recipes(p, body)
     found = sphere_bed.at_rest(bed, lid)
+    found = change(bed, found) if change else found
     made = sphere_bed.build(bed, lid, found["x"], found["r"], found["lid"])
     O.dt = dt
     gravity = (0, 0, -GRAVITY if p.bulk_gravity else 0)
