@@ -39,7 +39,7 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import dragged_body, engines, fields, headless, intruder, picture, progress  # noqa: E402
+from graindrive import dragged_body, driven, engines, fields, headless, intruder, progress  # noqa: E402
 from graindrive import recording, scene, space, sphere_bed  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzRestitutionSpheres  # noqa: E402
@@ -380,47 +380,42 @@ STAGE = ("base", "body", "grains", "lid", "load_error", "fraction", *sphere_bed.
 
 
 def record(p, folder, march, stage, seen):
-    """Run in blocks of a tenth of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
+    """Run in blocks of a quarter of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
     from yade import O
 
     folder.declare_series(**forces.UNITS)
     binner, base = O.labeledEngine("binner"), O.labeledEngine("base_binner")
-    around = O.labeledEngine("around") if p.fields else None
     ids, lids = range(*stage["grains"]), range(*stage["lid"])
     samples = max(1, round(BLOCK_TRAVEL * D / (p.speed * O.dt) / SAMPLE_EVERY))
-    block, track = samples * SAMPLE_EVERY, recording.Track(folder)
+    block = samples * SAMPLE_EVERY
     steps = int(p.way * D / (p.speed * O.dt) / block) * block
-    due = np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1]
-    shown = [*scene.members(stage["base"]), *lids]
-    frames = recording.Frames(folder, due, lambda: picture.taken(ids, shown, stage["body"]))
-    settled = forces.PAPERS_TRANSIENT * seen.height / D
+    transient = forces.PAPERS_TRANSIENT * seen.height / D
 
-    def sample(done):
+    def sample(done, track):
         if done == 0:
             return
         row = dict(t=march.time, travel=p.speed * march.time / D, lid_z=mean_height(lids), **force_means(binner, base))
         folder.append(**{name: row[name] for name in forces.UNITS})
         track.append(row)
-        if p.fields:
-            around.dead = row["travel"] < settled
 
-    with recording.overlap_advice(OVERLAP_KEYS):
-        recording.run_sampled(
-            folder,
-            march,
-            steps,
-            block,
-            sample,
-            track=track,
-            frames=frames,
-            stage=stage,
-            label=f"dragging {p.way:g} d",
-        )
-    summary, angular = forces.steady_state(track.arrays(), seen)
+    rows = driven.record(
+        p,
+        folder,
+        march,
+        steps,
+        block,
+        sample,
+        stage=stage,
+        ids=ids,
+        due=np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1],
+        shown=[*scene.members(stage["base"]), *lids],
+        settled=lambda t: p.speed * t / D >= transient,
+        advice=OVERLAP_KEYS,
+        label=f"dragging {p.way:g} d",
+    )
+    summary, angular = forces.steady_state(rows, seen)
     if not summary["steady"]:
         print("drag or lift is not steady by the test to the end of the run; take a longer travel", file=sys.stderr)
-    if p.fields:
-        fields.write_fields(folder, "around", around)
     folder.write("angular", angular, first_travel=summary["steady_from"])
     z, after = profile(p, ids)
     folder.write("profile", dict(z=z, fraction=np.array(stage["fraction"]), fraction_after=after))
