@@ -29,6 +29,7 @@ Cost: the paper's size is 190,000 spheres and 2e5 steps for 40 D, an hour or two
     scripts/run lift help                               all keys
 """
 
+import functools
 import os
 import sys
 from typing import ClassVar, Literal, Optional
@@ -41,7 +42,7 @@ import numpy as np  # noqa: E402
 
 from graindrive import dragged_body, driven, engines, fields, headless, intruder, progress  # noqa: E402
 from graindrive import recording, scene, space, sphere_bed  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
+from graindrive.errors import UsageError, one_line  # noqa: E402
 from graindrive.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
@@ -108,7 +109,8 @@ class LiftParameters(StudyParameters):
     @property
     def furthest(self):
         """How far it goes of itself [d]: the paper's 40 D, or as far as the box allows."""
-        return min(MOST_TRAVEL * self.cylinder_diameter, max(self.width - AWAY * self.cylinder_diameter, 1.0))
+        size = max(self.cylinder_diameter, height_in(self.shape, intruder.contents_of(self.shape)))
+        return min(MOST_TRAVEL * self.cylinder_diameter, max(self.width - AWAY * size, 1.0))
 
     def auto_values(self):
         """Return what is taken for travel=auto."""
@@ -118,6 +120,17 @@ class LiftParameters(StudyParameters):
         """Return all that decides the result: for a shape from a file its contents too, not the name alone."""
         told = {"outline": intruder.contents_of(self.shape)} if dragged_body.names_a_file(self.shape) else {}
         return {**super().identity(), **told}
+
+
+@functools.lru_cache(maxsize=None)
+def height_in(shape, _contents):
+    """Return the height [d] of the body that a file describes; 0 for the cylinder and for a file that describes none."""
+    if not dragged_body.names_a_file(shape):
+        return 0.0
+    try:
+        return dragged_body.of_shape(shape, 0.0, D, D).height / D
+    except UsageError:  # `check` will say so
+        return 0.0
 
 
 PRESETS = {
@@ -150,6 +163,11 @@ def body_of(p):
 def check_room(p, body):
     """UsageError where the body does not fit into the box, or would come near lid, surface, base or its own wake."""
     low, high = body.low / D, body.high / D
+    size = max(high[0] - low[0], high[2] - low[2])
+    if size < 1:
+        raise UsageError(
+            f"shape={one_line(p.shape)} is {size:.3g} d long, less than a grain; its lengths are in grain diameters, {D:g} m each"
+        )
     least = LEAST_PERIOD * (1 + p.polydispersity)
     for key in ("width", "breadth"):
         if getattr(p, key) < least:

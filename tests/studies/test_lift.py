@@ -329,6 +329,24 @@ def test_an_outline_is_swept_along_y_with_its_y_up(lift, tmp_path):
     assert summary_of(tmp_path / "run")["drag"] > 0
 
 
+def test_a_tall_body_is_dragged_no_farther_than_its_own_wake_allows(lift, tmp_path):
+    (tmp_path / "tall.csv").write_text("0, 0\n2, 0\n2, 6\n0, 6\n")
+    keys = dict(shape=str(tmp_path / "tall.csv"), travel=None, width=40, height=20, depth=9)
+    p = parameters(lift, **keys)
+    lift.check(p)
+    assert p.way == pytest.approx(40 - 2 * 6)
+    assert parameters(lift, **{**keys, "shape": "cylinder"}).way == pytest.approx(40 - 2 * 2)
+
+
+def test_a_body_smaller_than_a_grain_has_other_units(lift, tmp_path):
+    (tmp_path / "metres.csv").write_text("0, 0\n0.006, 0\n0.006, 0.006\n0, 0.006\n")
+    with pytest.raises(UsageError, match="0.006 d long, less than a grain; its lengths are in grain diameters"):
+        lift.check(parameters(lift, shape=str(tmp_path / "metres.csv")))
+    (tmp_path / "microns.csv").write_text("0, 0\n6000, 0\n6000, 6000\n0, 6000\n")
+    with pytest.raises(UsageError, match="3e[+]03 d above its axis"):
+        lift.check(parameters(lift, shape=str(tmp_path / "microns.csv")))
+
+
 def test_a_run_of_a_shape_from_a_file_is_known_by_its_contents(lift, tmp_path):
     (tmp_path / "a.py").write_text(BALL)
     (tmp_path / "b.py").write_text(BALL.replace("1.5", "1.6"))
