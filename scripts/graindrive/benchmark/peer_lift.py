@@ -4,7 +4,8 @@ usage: scripts/compare_lift [key=value …] [--seeds 1 2 3] [--out DIR]
 
   key=value    keys of the lift study, such as scale=demo lid_density=20 (its demo by default); frame=cylinder is set
   --seeds      the packings that are compared, 1 by default
-  --out DIR    where LIGGGHTS's input and forces.json, the numbers, are left; a folder that is removed by default
+  --out DIR    where LIGGGHTS's input, forces.json, the numbers, and report.md are left, for `scripts/results DIR`; by default a
+               folder that is removed
 
 Both start from the bed at rest without its tangential springs, which LIGGGHTS cannot be given, and run one after the other on
 one core. Printed are means over the travel in which both are steady, with standard errors, and what the difference is over
@@ -22,12 +23,14 @@ import numpy as np
 
 from .. import command_line, scene, study
 from ..errors import UsageError
+from ..whole_files import write_text
 from ..postproc.lift import forces
 from ..postproc.measured import Measured, mean_of
 from ..postproc.statistics import block_mean
 from . import liggghts_lift as peer
 
 EVERY = 10  # steps between two samples
+SIGMAS = 2  # combined errors within which means are the same
 
 
 # ---- one scene in both codes -----------------------------------------------------------------------------------------
@@ -92,39 +95,74 @@ def means(found, block, transient):
 # ---- several packings ------------------------------------------------------------------------------------------------
 
 
-def over_packings(found):
-    """Return the mean of `Mean`s of several packings as `Measured`."""
-    return mean_of([Measured(mean.value, mean.error) for mean in found])
+def apart(own, other):
+    """Return the difference of two numbers with errors over their combined error."""
+    return abs(own.value - other.value) / np.hypot(own.error, other.error)
 
 
 def line(seed, name, own, other):
     """Return a row of the table as text."""
-    apart = abs(own.value - other.value) / np.hypot(own.error, other.error)
-    return f"{seed:>6} {name:>5} {own.value:10.4g} ± {own.error:8.2g} {other.value:10.4g} ± {other.error:8.2g} {apart:7.2f}"
+    errors = apart(own, other)
+    return f"{seed:>6} {name:>5} {own.value:10.4g} ± {own.error:8.2g} {other.value:10.4g} ± {other.error:8.2g} {errors:7.2f}"
 
 
-def compare(lift, parameters, seeds, folder):
-    """Run both codes for each seed; print a line for each force, and return the rows for forces.json."""
-    found, rows = [], []
+def compare(lift, parameters, seeds, folder, keys):
+    """Run both codes for each seed; print a line for each force, and leave forces.json and report.md after each seed."""
+    rows = []
     print("  seed force     GrainLoop [N]         LIGGGHTS [N]      apart [combined errors]")
     for seed in seeds:
         place = Path(folder) / f"seed-{seed}"
         place.mkdir(parents=True, exist_ok=True)
         own, other, *seconds = both(lift, parameters.copy(update=dict(seed=seed)), place)
-        found.append((own, other))
         rows += [row_of(seed, name, own[name], other[name], seconds) for name in own]
         print(*(line(seed, name, own[name], other[name]) for name in own), sep="\n", flush=True)
-    for name in ("drag", "lift"):
-        own, other = (over_packings([pair[side][name] for pair in found]) for side in (0, 1))
-        rows.append(row_of("all", name, own, other, [None, None]))
-        print(line("all", name, own, other))
-    return rows
+        told = rows + over_packings(rows)
+        write_text(Path(folder) / "forces.json", json.dumps(dict(keys=keys, rows=told), indent=1) + "\n")
+        write_text(Path(folder) / "report.md", report(Path(folder).name, keys, told))
+    for row in over_packings(rows):
+        print(line(row["seed"], row["force"], *measured(row)))
 
 
 def row_of(seed, name, own, other, seconds):
     """Return what forces.json keeps of a comparison [N, s]."""
     values = dict(own=own.value, own_err=own.error, liggghts=other.value, liggghts_err=other.error)
     return dict(seed=seed, force=name, **values, own_s=seconds[0], liggghts_s=seconds[1])
+
+
+def measured(row):
+    """Return both codes' forces of a row as `Measured`."""
+    return [Measured(row[name], row[f"{name}_err"]) for name in ("own", "liggghts")]
+
+
+def over_packings(rows):
+    """Return the rows of the means over all seeds, with the larger of the runs' own errors and those by scatter."""
+    found = []
+    for force in ("drag", "lift"):
+        pairs = [measured(row) for row in rows if row["force"] == force]
+        seconds = [sum(row[name] for row in rows if row["force"] == force) for name in ("own_s", "liggghts_s")]
+        found.append(row_of("all", force, *(mean_of([pair[side] for pair in pairs]) for side in (0, 1)), seconds))
+    return found
+
+
+def report(name, keys, rows):
+    """Return the Markdown of a comparison: its command, and a table with a verdict for the means over all seeds."""
+    seeds = [row["seed"] for row in rows if row["force"] == "drag" and row["seed"] != "all"]
+    seconds = next([row["own_s"], row["liggghts_s"]] for row in rows if row["seed"] == "all")
+    command = " ".join(["scripts/compare_lift", *keys, "--seeds", *map(str, seeds), "--out", name])
+    lines = [
+        f"## Lift: the same beds in LIGGGHTS (`{name}`)",
+        "",
+        f"Repeat: `{command}`; {seconds[0]:.0f} s of GrainLoop and {seconds[1]:.0f} s of LIGGGHTS by the clock, one core"
+        f" each. Means are the same if they lie within {SIGMAS} combined errors.",
+        "",
+        "| seed | force | GrainLoop [N] | LIGGGHTS [N] | apart, combined errors | verdict |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        own, other = measured(row)
+        verdict = "" if row["seed"] != "all" else "**the same**" if apart(own, other) <= SIGMAS else "**not the same**"
+        lines.append(f"| {row['seed']} | {row['force']} | {own} | {other} | {apart(own, other):.2f} | {verdict} |")
+    return "\n".join(lines) + "\n"
 
 
 def main(arguments):
@@ -146,9 +184,7 @@ def main(arguments):
         raise UsageError("only shape=cylinder, frame=cylinder and loop=grain are compared; leave these keys out")
     made.check(p)
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(given.out or scratch)
-        rows = compare(lift, p, given.seeds, folder)
-        (folder / "forces.json").write_text(json.dumps(dict(parameters=given.keys, rows=rows), indent=1) + "\n")
+        compare(lift, p, given.seeds, given.out or scratch, given.keys)
     return 0
 
 
