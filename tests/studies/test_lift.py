@@ -361,6 +361,13 @@ def test_a_run_of_a_shape_from_a_file_is_known_by_its_contents(lift, tmp_path):
         ("def distance(points): pass\nlow = (0, 0)\nhigh = (1, 1)\n", "must be three numbers"),
         ("def distance(points:\n", "SyntaxError"),
         ("import numpy as np\nlow, high = (-2,) * 3, (2,) * 3\ndef distance(p): return 3 * p[:, 0]\n", "slope"),
+        (BALL.replace("0.1\n", "'fine'\n"), "could not convert"),
+        (BALL.replace("(-2.2,) * 3", "('a', 0, 0)"), "could not convert"),
+        (BALL.replace("- 1.5", "+ 1.5"), "at some nodes, inside"),
+        (BALL.replace("0.1\n", "0\n"), "spacing"),
+        (BALL.replace("0.1\n", "float('nan')\n"), "spacing"),
+        (BALL.replace("sum(axis=1)", "sum()"), "must give one distance"),
+        ("import sys\nsys.exit('I am a program')\n", "SystemExit: I am a program"),
     ],
 )
 def test_a_file_that_describes_no_body_is_refused(lift, tmp_path, text, reason):
