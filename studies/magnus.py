@@ -33,7 +33,7 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import channel, engines, fields, headless, intruder, picture, progress, recording, scene  # noqa: E402
+from graindrive import channel, driven, engines, fields, headless, intruder, progress, recording, scene  # noqa: E402
 from graindrive.block_means import block_means  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
@@ -293,44 +293,40 @@ def record(p, folder, march, stage):
 
     folder.declare_series(**UNITS)
     state, binner = O.bodies[stage["body"]].state, O.labeledEngine("binner")
-    around = O.labeledEngine("around") if p.fields else None
     samples = max(1, round(BLOCK_TRAVEL * D / (p.v0 * O.dt) / SAMPLE_EVERY))
-    block, track, ids = samples * SAMPLE_EVERY, recording.Track(folder), range(*stage["grains"])
+    block = samples * SAMPLE_EVERY
     steps = int(p.way * D / (p.v0 * O.dt) / block) * block
-    due = np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1]
-    frames = recording.Frames(folder, due, lambda: picture.taken(ids, stage["walls"], stage["body"]))
 
-    def steady():
-        return steady_state(track.arrays(), p.settle_travel, p.mu, p.spin_ratio)
+    def steady(rows):
+        return steady_state(rows, p.settle_travel, p.mu, p.spin_ratio)
 
-    def sample(done):
+    def sample(done, track):
         if done == 0:
             return False
         t = march.time
         row = dict(t=t, travel=p.v0 * t / D, x=state.pos[0], phi=area_fraction(p, stage), **block_means(binner))
         folder.append(**{name: row[name] for name in UNITS})
         track.append(row)
-        if p.fields:
-            around.dead = row["travel"] < p.settle_travel
         looks = p.until_error and len(track) % LOOK_EVERY == 0
-        return looks and steady().is_good_to(p.until_error, FEWEST_BLOCKS)
+        return looks and steady(track.arrays()).is_good_to(p.until_error, FEWEST_BLOCKS)
 
-    with recording.overlap_advice(OVERLAP_KEYS):
-        recording.run_sampled(
-            folder,
-            march,
-            steps,
-            block,
-            sample,
-            track=track,
-            frames=frames,
-            stage=stage,
-            label=f"driving {p.way:g} d",
-        )
-    found = steady()
+    rows = driven.record(
+        p,
+        folder,
+        march,
+        steps,
+        block,
+        sample,
+        stage=stage,
+        ids=range(*stage["grains"]),
+        due=np.linspace(steps, 0, p.frames, endpoint=False).round()[::-1],
+        shown=stage["walls"],
+        settled=lambda t: p.v0 * t / D >= p.settle_travel,
+        advice=OVERLAP_KEYS,
+        label=f"driving {p.way:g} d",
+    )
+    found = steady(rows)
     say_if_not_resolved(p, found)
-    if p.fields:
-        fields.write_fields(folder, "around", around)
     folder.write("angular", found.angular, first_travel=found.start)
     folder.summarize(v0=p.v0, spin_ratio=p.spin_ratio, mu=p.mu, travel=p.way, **found.summary)
 

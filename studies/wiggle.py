@@ -48,7 +48,7 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import engines, fields, headless, intruder, lid, packing, picture, progress  # noqa: E402
+from graindrive import driven, engines, fields, headless, intruder, lid, packing, progress  # noqa: E402
 from graindrive import recording, scene  # noqa: E402
 from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import HertzHistoryMaterial  # noqa: E402
@@ -305,28 +305,32 @@ def record(p, folder, march, stage):
 
     folder.declare_series(**SERIES)
     state, drive, binner = O.bodies[stage["body"]].state, O.labeledEngine("drive"), O.labeledEngine("binner")
-    around = O.labeledEngine("around") if p.fields else None
     steps, block = max(1, round(p.time / O.dt)), max(1, round(p.period / SAMPLES_PER_PERIOD / O.dt))
-    base, ids = range(stage["base"]), range(stage["base"], stage["base"] + stage["grains"])
-    due, track = np.linspace(0, steps, p.frames).round(), recording.Track(folder)
-    frames = recording.Frames(folder, due, lambda: picture.taken(ids, [*base, *stage["lid"]], stage["body"]))
 
-    def sample(done):
+    def sample(done, track):
         t = march.time
         if not state.pos[1] > 0:
             raise RuntimeError(f"step {done}: the body fell through the base, to y = {state.pos[1]:.3g} d")
         track.append(dict(t=t, y=state.pos[1]))
         folder.append(t=t, contacts=binner.lastContactNumber, work=drive.work, **motion(state, drive))
-        if p.fields:
-            around.dead = t < SKIPPED * p.time
 
-    with recording.overlap_advice(OVERLAP_KEYS):
-        recording.run_sampled(
-            folder, march, steps, block, sample, track=track, frames=frames, stage=stage, label="shaking"
-        )
-    keep_rates(p, folder, **track.arrays())
-    if p.fields:
-        fields.write_fields(folder, "around", around, fields.GRAIN)
+    rows = driven.record(
+        p,
+        folder,
+        march,
+        steps,
+        block,
+        sample,
+        stage=stage,
+        ids=range(stage["base"], stage["base"] + stage["grains"]),
+        due=np.linspace(0, steps, p.frames).round(),
+        shown=[*range(stage["base"]), *stage["lid"]],
+        settled=lambda t: t >= SKIPPED * p.time,
+        advice=OVERLAP_KEYS,
+        label="shaking",
+        units=fields.GRAIN,
+    )
+    keep_rates(p, folder, **rows)
 
 
 # Study ----------------------------------------------------------------------------------------------------------------

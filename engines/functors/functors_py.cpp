@@ -50,7 +50,8 @@ void bind_functors()
 	});
 	bind_laws();
 	py::def("present_contacts", present_contacts_table, (py::arg("scene"), py::arg("law"), py::arg("contact_maker")),
-		"Contacts of the disks and spheres of a scene (O._sceneObj) at the present positions, those that YADE's next step will\n"
+		"Contacts of the disks, spheres and Solids of a scene (O._sceneObj) at the present positions, those that YADE's next "
+		"step will\n"
 		"find, by one of our Law2_ functors and our Ip2_: arrays as of `contact_table`, without point, with slip [m] along z x "
 		"n,\n"
 		"which tells all of it for disks, and slip_vector [m], shape (n, 3), of i against j, for spheres.\n"

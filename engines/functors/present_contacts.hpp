@@ -9,10 +9,11 @@
 
 namespace graindrive {
 
-/// One contact of two disks or spheres, in the order of YADE's interaction where there is one, else the smaller id first.
+/// One contact of two disks or spheres, in the order of YADE's interaction where there is one, else the smaller id first; or of a
+/// Solid, which is body 1, and a sphere.
 struct PresentContact {
 	int id1, id2;
-	Vector3r normal;            ///< from body 1 to that image of body 2 which touches it
+	Vector3r normal;            ///< from body 1 to that image of body 2 which touches it; out of a Solid
 	Real overlap;               ///< [m]
 	laws::PairResponse answer;  ///< forces on body 2 and the spring of body 1 against it
 };

@@ -3,9 +3,10 @@
 import disks
 import numpy as np
 import pytest
-from graindrive import engines
+import spheres
+from graindrive import engines, surfaces
 from yade import O
-from yade.wrapper import Law2_ScGeom_FrictPhys_CundallStrack
+from yade import wrapper as w
 
 LAWS = {
     "hertz_history": lambda lever: disks.hertz(2e5, 2.46e5, 250, 250, leverArm=lever),
@@ -69,6 +70,46 @@ def test_the_next_step_finds_them(law, lever, period, steps):
         np.testing.assert_allclose(springs[pair], spring, rtol=1e-9, atol=5 * disks.EPS)
 
 
+def loop_with_solids(law):
+    """YADE's loop for spheres and solids, an endless one among them."""
+    makers = [w.Ig2_Sphere_Sphere_ScGeom(), engines.Ig2_Solid_Sphere_ScGeom()]
+    phys = engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=0.3)
+    collider = w.InsertionSortCollider([w.Bo1_Sphere_Aabb(), engines.Bo1_Solid_Aabb()], allowBiggerThanPeriod=True)
+    contacts = w.InteractionLoop(makers, [phys], [law], label="contacts")
+    O.engines = [w.ForceResetter(), collider, contacts, w.NewtonIntegrator(damping=0)]
+
+
+@pytest.mark.parametrize("lever", ["radius", "contactPoint"])
+@pytest.mark.parametrize("steps", [0, 20])
+def test_the_next_step_finds_contacts_with_solids(lever, steps):
+    """An endless cylinder in a periodic cell, which spheres touch through its side too, and a ball that is free to recoil."""
+    disks.new_scene(dt=1e-4, period=(8, 8, 40))
+    cylinder = surfaces.body(surfaces.cylinder((0, 0, 0), (0, 1, 0), 1.5), position=(7.5, 3, 0))
+    cylinder.state.vel, cylinder.state.angVel = (0.3, 0, 0), (0, 0.5, 0)
+    ball = surfaces.ball((0, 0, 0), 1.0)
+    O.bodies.append(cylinder)
+    O.bodies.append(surfaces.body(ball, position=(3.5, 3, 0), mass=5.0, inertia=(2, 2, 2), held=False))
+    rng = np.random.default_rng(4)
+    for a in (0.4, 1.7, 2.9, 4.5):
+        reach = 1.99 + rng.uniform(-0.01, 0.005)
+        at = (7.5 + reach * np.cos(a), rng.uniform(0, 8), reach * np.sin(a))
+        spheres.sphere(at, velocity=rng.uniform(-1, 1, 3), spin=rng.uniform(-2, 2, 3))
+        at = (3.5 + 1.49 * np.cos(a), 3, 1.49 * np.sin(a))
+        spheres.sphere(at, velocity=rng.uniform(-1, 1, 3), spin=rng.uniform(-2, 2, 3))
+    loop_with_solids(engines.Law2_ScGeom_ContactPhys_HertzRestitution(young=5e5, leverArm=lever))
+    if steps:
+        disks.run(steps)
+    columns = ("overlap", "normal", "normal_force", "tangential_force", "slipping")
+    table = present()
+    before, slips = by_pair(table, columns), by_pair(table, ["slip_vector"])
+    O.step()
+    found = by_pair(engines.contact_table(O._sceneObj), columns)
+    assert before.keys() == found.keys() and len(found) >= 6 and all(min(pair) < 2 for pair in found)
+    for pair, numbers in found.items():  # tolerances as above
+        np.testing.assert_allclose(before[pair], numbers, rtol=1e-9, atol=10 * disks.EPS * 5e5)
+        np.testing.assert_allclose(slips[pair], O.interactions[pair].phys.slip, rtol=1e-9, atol=10 * disks.EPS)
+
+
 def test_looking_changes_no_bit():
     def everything(*, looking):
         crowd(LAWS["hertz_history"]("radius"))
@@ -108,4 +149,4 @@ def test_another_law_is_refused_by_name():
     disks.loop()
     maker = disks.engine("contacts").physDispatcher.functors[0]
     with pytest.raises(ValueError, match="knows Graindrive's laws, .* got Law2_ScGeom_FrictPhys_CundallStrack"):
-        engines.present_contacts(O._sceneObj, Law2_ScGeom_FrictPhys_CundallStrack(), maker)
+        engines.present_contacts(O._sceneObj, w.Law2_ScGeom_FrictPhys_CundallStrack(), maker)

@@ -1,7 +1,8 @@
-"""`studies/RESULTS.md`, made of the reports of campaigns: `python3 -m graindrive.postproc.campaign.results FOLDER …`.
+"""`studies/RESULTS.md`, made of the reports of campaigns and of comparisons with other programs.
 
-RESULTS.md keeps one section per campaign, between two comments that name it. Publishing a campaign replaces its
-section and its figures in studies/figures/, and leaves the others as they are.
+Called by `python3 -m graindrive.postproc.campaign.results FOLDER …`. RESULTS.md keeps one section per campaign, between two
+comments that name it. Publishing a campaign replaces its section and its figures in studies/figures/, and leaves the others
+as they are.
 """
 
 import re
@@ -16,8 +17,9 @@ from .folder import Campaign
 HEADING = """# Results
 
 What campaigns of this checkout measured, beside what the papers say. Made by `scripts/results FOLDER …` from the reports
-that `scripts/campaign` leaves; not written by hand. Errors are standard errors. A verdict follows from the rule beside it,
-σ being the standard error; a measurement that cannot tell a claim from its opposite is *not decided*.
+that `scripts/campaign` and `scripts/compare_lift` leave; not written by hand. Errors are standard errors. A verdict
+follows from the rule beside it, σ being the standard error; a measurement that cannot tell a claim from its opposite is
+*not decided*.
 """
 SECTION = "<!-- campaign {name} -->\n{text}\n<!-- end of {name} -->\n"
 SECTIONS = re.compile(r"<!-- campaign (?P<name>[^\n]+?) -->\n(?P<text>.*?)\n<!-- end of (?P=name) -->\n", re.DOTALL)
@@ -37,9 +39,13 @@ def publish(folders, studies):
 
 
 def report_of(folder):
-    """Return (campaign's name, Markdown) of the report in a campaign's folder; RunError if there is none."""
+    """Return (name, Markdown) of the report in a folder; RunError if there is none.
+
+    The name is the campaign's; a comparison with another program, which is none, is named by its folder.
+    """
     try:
-        return Campaign.of(folder).plan["name"], (folder / "report.md").read_text(encoding="utf-8").strip()
+        text = (folder / "report.md").read_text(encoding="utf-8").strip()
+        return Campaign.of(folder).plan["name"] if (folder / "campaign.json").exists() else folder.resolve().name, text
     except FileNotFoundError:
         raise RunError(
             f"{folder} holds no report.md: call scripts/campaign first, with a `report:` in its file"

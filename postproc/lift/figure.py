@@ -8,6 +8,7 @@ from matplotlib.patches import Polygon
 
 from .. import fields
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, save
+from ..measured import Measured
 from ..reader import Run, RunError
 
 
@@ -47,15 +48,15 @@ def draw_forces(axes, run):
     found, travel = run.summary, run.series["travel"]
     drag = -run.series["fx"] * found["drag_coefficient"] / found["drag"]
     lift = run.series["fz"] / found["buoyancy"] / 10
-    names = ("drag_coefficient", 1, "$C_d$"), ("lift_over_buoyancy", 10, "lift over 10 buoyancies")
-    for force, (name, scale, label), colour in zip((drag, lift), names, (BLUE, VERMILLION)):
+    names = ("drag_coefficient", 1, "$C_d$ {}"), ("lift_over_buoyancy", 10, "lift {} buoyancies")
+    for force, (name, scale, words), colour in zip((drag, lift), names, (BLUE, VERMILLION)):
         axes.plot(travel, force, color=colour, linewidth=0.4, alpha=0.5)
-        start, value, error = found["steady_from"], found[name] / scale, (found[f"{name}_err"] or 0) / scale
-        words = f"{label} {value:.2f} ± {error:.1g}"
-        axes.plot([start, start + found["steady_travel"]], 2 * [value], color=colour, linewidth=1.5, label=words)
+        start, mean = found["steady_from"], Measured(found[name], found[f"{name}_err"] or 0.0)
+        ends, height = [start, start + found["steady_travel"]], 2 * [mean.value / scale]
+        axes.plot(ends, height, color=colour, linewidth=1.5, label=words.format(mean))
     axes.axvspan(found["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
     axes.axhline(0, color=BLACK, linewidth=0.4)
-    axes.set(xlabel="travel  [$d$]", ylabel="force", xlim=(0, travel[-1]))
+    axes.set(xlabel="travel  [$d$]", ylabel="$C_d$,  lift over 10 buoyancies", xlim=(0, travel[-1]))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
     axes.legend(loc="upper left", ncols=2, frameon=False, handlelength=1, columnspacing=1, fontsize=6)
@@ -75,6 +76,7 @@ def draw_stress(axes, run):
     axes.set(
         xlabel=r"$\theta/\pi$, from the direction of travel, $> 0$ below", ylabel=r"stress over $P_0$", xlim=(-1, 1)
     )
+    axes.set_xticks(np.linspace(-1, 1, 5))
     axes.axvline(0, color=BLACK, linewidth=0.4)
     axes.legend(loc="upper right")
 

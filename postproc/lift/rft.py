@@ -90,6 +90,9 @@ def linear(beta, plates):
     return np.column_stack([np.interp(beta, nodes, column) for column in columns.T])
 
 
+TERMS = 3  # of `fourier_terms`
+
+
 def fourier_terms(beta):
     """Return (m, 3) the terms at `beta` (m,) that are left of Li's sum where gamma = 0: 1, cos 2 beta, sin 2 beta.
 

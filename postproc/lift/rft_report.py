@@ -18,6 +18,7 @@ LI = "Li et al. 2013"
 GUILLARD = "Guillard et al. 2014, Fig. 8(b)"
 SIDES = {"up": ("half_flat_up", above(0), "> 0"), "down": ("half_flat_down", below(0), "< 0")}
 FORMS = (("published", rft.as_published), ("split", rft.as_split))
+FITS = 4.0  # χ² over its degrees of freedom, of a fit whose points' errors may be half of what they should be
 TOLERANCE = 0.2  # of a force, where Ding et al. speak of a good approximation
 
 claim = partial(claim_on, dict(lid_density=("ρ*/ρ_g", ""), depth=("h", " d"), shape=("", "")))
@@ -104,6 +105,7 @@ def rft_claims(campaign, rows):
     plates = plates_of(campaign, rows)
     halves, cylinder, others = (campaign.sweep(name) for name in ("halves", "cylinder", "growth"))
     return [
+        *fourier_claims(rows, plates),
         *half_claims(campaign, halves, plates),
         *cylinder_claims(campaign, cylinder, plates),
         *growth_claims(campaign, rows, others),
@@ -119,6 +121,25 @@ def complete(campaign, rows):
     except ValueError:
         return False
     return True
+
+
+def fourier_claims(rows, plates):
+    """Whether the three Fourier terms that are left of the published sum pass through the plates; nothing for three or fewer."""
+    freedom = len(plates.beta) - rft.TERMS
+    if freedom < 1:
+        return []
+    error = float(np.sqrt(2 / freedom))  # standard deviation of chi^2 over its degrees of freedom
+    return [
+        claim(
+            rows,
+            f"{name} by tilt is three Fourier terms; χ² over its degrees of freedom",
+            LI,
+            "≈ 1",
+            Measured(float(value), error),
+            below(FITS),
+        )
+        for name, value in zip(("α_x", "α_z"), rft.misfit(plates))
+    ]
 
 
 def half_claims(campaign, rows, plates):
@@ -171,12 +192,13 @@ def growth_claims(campaign, rows, others):
     chosen = [int(np.argmin(np.abs(plates.beta - beta))) for beta in few.beta]
     same = rft.Plates(few.beta, plates.alpha[:, chosen], plates.error[:, chosen], plates.depth)
     shallow, deep = sorted((few, same), key=lambda found: found.depth)
-    growth, tilt = deep.depth / shallow.depth, np.degrees(few.beta[-1])
+    growth, tilt = round(deep.depth / shallow.depth, 2), np.degrees(few.beta[-1])
     claims = []
     for sign, words in ((-1, "odd in β (up and down alike)"), (1, "even in β (lifts the cylinder)")):
         ratio = stress_part(deep, sign) / stress_part(shallow, sign)
         text = f"plates at ±{tilt:.3g}°, α_z|z| {words}: deep over shallow"
-        rule = Agrees(growth, TOLERANCE * growth, 2 * TOLERANCE * growth)
+        allowed = round(TOLERANCE * growth, 2)
+        rule = Agrees(growth, allowed, 2 * allowed)
         claims.append(claim(others, text, LI, f"{growth:.3g}, as the depths", ratio, rule))
     return claims
 
@@ -215,7 +237,7 @@ def draw_plates(axes, plates, rho_g):
             axes.plot(np.degrees(beta), weights(beta, plates) @ plates.alpha[k] / rho_g, dash, color=style["color"])
     axes.axhline(0, color=BLACK, linewidth=0.4)
     misfit = rft.misfit(plates)
-    axes.set_title(rf"dotted: Fourier, $\chi^2/\nu$ = {misfit[0]:.2g}, {misfit[1]:.2g}", fontsize=7)
+    axes.set_title(rf"dotted: Fourier, $\chi^2/\nu$ = {misfit[0]:.0f}, {misfit[1]:.0f}", fontsize=7)
     axes.set(
         xlabel=r"tilt $\beta$ [°], > 0: leading face looks down", ylabel=r"$\alpha/\rho g$", xticks=range(-90, 91, 45)
     )

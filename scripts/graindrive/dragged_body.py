@@ -90,15 +90,18 @@ def sampled_from(path, d):
     the samples. Its normal is that of the sampled distance. UsageError with the reason for what is no such file.
     """
     told = told_by(path)
-    low, high = np.array(told["low"], float), np.array(told["high"], float)
-    spacing = float(told.get("spacing", SPACING))
     try:
-        made = surfaces.sampled(lambda points: told["distance"](points / d) * d, low * d, high * d, spacing * d)
+        low, high, spacing = (np.array(told[name], float) for name in ("low", "high", "spacing"))
+        made = surfaces.sampled(lambda points: told["distance"](points / d) * d, low * d, high * d, float(spacing) * d)
+        points = grid(low, high, float(spacing))
+        depth = -np.asarray(told["distance"](points), float) / spacing
     except Exception as error:  # a function of somebody's may raise anything
         raise UsageError(f"shape={one_line(path)}: {one_line(error, 400)}") from None
-    points = grid(low, high, spacing)
-    depth = -np.asarray(told["distance"](points), float) / spacing
     inside = points[depth > -0.5]
+    if not len(inside):
+        raise UsageError(
+            f"shape={one_line(path)}: distance(points) is nowhere negative between low and high: there is no inside"
+        )
     volume = np.clip(0.5 + depth, 0, 1).sum() * spacing**3
     return DraggedBody(
         made, inside.min(axis=0) * d, inside.max(axis=0) * d, float(volume * d**3), False, np.zeros((0, 2))
@@ -108,11 +111,11 @@ def sampled_from(path, d):
 @functools.lru_cache(maxsize=None)
 def told_by(path):
     """Return the names that a Python file defines; UsageError unless distance, low and high are among them."""
-    file, names = os.path.expanduser(path), {}
+    file, names = os.path.expanduser(path), {"spacing": SPACING}
     try:
         with open(file, encoding="utf-8") as text:
             exec(compile(text.read(intruder.LARGEST_FILE), file, "exec"), names)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise UsageError(f"shape={one_line(path)}: {type(error).__name__}: {one_line(error, 400)}") from None
     missing = [name for name in ("distance", "low", "high") if name not in names]
     if missing:

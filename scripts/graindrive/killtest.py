@@ -33,6 +33,7 @@ NAME = "killtest"
 STUDIES = {  # at smoke size, with what shows most
     "magnus": "scale=smoke travel=20 settle_travel=8 frames=4 spin_ratio=5".split(),
     "wiggle": "scale=smoke time=12 frames=6 fields=1".split(),
+    "lift": "scale=smoke travel=12 frames=4 fields=1".split(),
 }
 INTERVALS = (0.0, 0.1, 1.0)  # s between checkpoints
 TIMED = ("wall_s", "particle_steps_per_second")

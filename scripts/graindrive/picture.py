@@ -3,7 +3,7 @@
 Contacts are those at the present positions, with the forces that the next step will find, under either loop; looking changes
 nothing. All places lie in one periodic image, along x for disks and along each periodic axis for spheres: grains in
 [0, period), the body whole with its centre there, a contact point next to its first side, of a solid next to the grain. A driven
-body that is a solid (`surfaces`) has no disks: only its place is told. On YADE's loop contacts with solids are left out.
+body that is a solid (`surfaces`) has no disks: only its place is told.
 """
 
 from typing import NamedTuple

@@ -1,33 +1,21 @@
 """The lift study, shrunk: closed forms of what it measures, the bed at rest, symmetries, both loops, and bad input."""
 
-import importlib
 import json
 from dataclasses import replace
 from pathlib import Path
 
 import h5py
+import lift_study
 import numpy as np
 import pytest
 
 from graindrive import dragged_body, scene, space, sphere_bed, yade_march
+from graindrive.benchmark import peer_lift
 from graindrive.errors import Interrupted, UsageError
 from graindrive.postproc.lift import forces
 from graindrive.run_folder import RunFolder
 
-STUDIES = Path(__file__).resolve().parents[2] / "studies"
-TINY = dict(
-    width=16,
-    breadth=5,
-    height=13,
-    depth=6.5,
-    cylinder_diameter=2,
-    lid_density=30,
-    speed=0.4,
-    dt_factor=2,
-    travel=9.0,
-    rest=1e-3,
-    fields=False,
-)
+TINY = dict(lift_study.SMALL, width=16, travel=9.0)
 
 
 @pytest.fixture(scope="module")
@@ -39,9 +27,7 @@ def cache(tmp_path_factory):
 @pytest.fixture
 def lift(monkeypatch, cache):
     """The study as a module, in this process."""
-    monkeypatch.setenv("GRAINDRIVE_CACHE", str(cache))
-    monkeypatch.syspath_prepend(str(STUDIES))
-    return importlib.import_module("lift")
+    return lift_study.module(monkeypatch, cache)
 
 
 def parameters(lift, **changes):
@@ -61,12 +47,11 @@ def summary_of(out):
     return json.loads((Path(out) / "summary.json").read_text())
 
 
-def built(lift, speed, **changes):
+def built(lift, speed, change=None, **keys):
     """Build the scene with any speed along x; return the parameters, the facts of the stage, and the binners of body and base."""
     from yade import O
 
-    p = parameters(lift, **changes).copy(update=dict(speed=speed))
-    stage = lift.build(p, lift.body_of(p), lift.time_step(p))
+    p, stage = lift_study.built(lift, {**TINY, **keys}, speed, change)
     return p, stage, O.labeledEngine("binner"), O.labeledEngine("base_binner")
 
 
@@ -215,30 +200,16 @@ def test_a_packing_has_no_grain_in_the_cylinder_or_far_into_another(lift):
 # ---- symmetries --------------------------------------------------------------------------------------------------
 
 
-def forgetful(lift, monkeypatch, change=lambda bed, x: x):
-    """Have the study see its bed at rest without springs, moved by `change`."""
-    made = sphere_bed.at_rest
-
-    def changed(bed, lid):
-        found = made(bed, lid)
-        moved = {name: change(bed, found[name]) for name in ("x", "lid")}
-        return {**found, **moved, "springs": [], "wall_springs": []}
-
-    monkeypatch.setattr(sphere_bed, "at_rest", changed)
+def mirrored(bed, found):
+    """Mirror a bed at rest across the plane through the body's axis that x crosses; its springs are lost."""
+    there = {name: found[name] * [-1, 1, 1] + [bed.width, 0, 0] for name in ("x", "lid")}
+    return peer_lift.without_springs(bed, {**found, **there})
 
 
-def mirrored(bed, x):
-    """Mirror places across the plane through the body's axis that x crosses."""
-    return x * [-1, 1, 1] + [bed.width, 0, 0]
-
-
-def test_a_mirrored_bed_gives_mirrored_forces(lift, monkeypatch):
-    with monkeypatch.context() as patch:
-        forgetful(lift, patch)
-        _, _, *binners = built(lift, 0.4)
-        there = forces_of_steps(*binners, 300)
-    forgetful(lift, monkeypatch, mirrored)
-    _, _, *binners = built(lift, -0.4)
+def test_a_mirrored_bed_gives_mirrored_forces(lift):
+    _, _, *binners = built(lift, 0.4, peer_lift.without_springs)
+    there = forces_of_steps(*binners, 300)
+    _, _, *binners = built(lift, -0.4, mirrored)
     back = forces_of_steps(*binners, 300)
     for one, other in zip(there, back):
         # Sums in another order differ by round-off, which collisions let grow.
@@ -358,6 +329,24 @@ def test_an_outline_is_swept_along_y_with_its_y_up(lift, tmp_path):
     assert summary_of(tmp_path / "run")["drag"] > 0
 
 
+def test_a_tall_body_is_dragged_no_farther_than_its_own_wake_allows(lift, tmp_path):
+    (tmp_path / "tall.csv").write_text("0, 0\n2, 0\n2, 6\n0, 6\n")
+    keys = dict(shape=str(tmp_path / "tall.csv"), travel=None, width=40, height=20, depth=9)
+    p = parameters(lift, **keys)
+    lift.check(p)
+    assert p.way == pytest.approx(40 - 2 * 6)
+    assert parameters(lift, **{**keys, "shape": "cylinder"}).way == pytest.approx(40 - 2 * 2)
+
+
+def test_a_body_smaller_than_a_grain_has_other_units(lift, tmp_path):
+    (tmp_path / "metres.csv").write_text("0, 0\n0.006, 0\n0.006, 0.006\n0, 0.006\n")
+    with pytest.raises(UsageError, match="0.006 d long, less than a grain; its lengths are in grain diameters"):
+        lift.check(parameters(lift, shape=str(tmp_path / "metres.csv")))
+    (tmp_path / "microns.csv").write_text("0, 0\n6000, 0\n6000, 6000\n0, 6000\n")
+    with pytest.raises(UsageError, match="3e[+]03 d above its axis"):
+        lift.check(parameters(lift, shape=str(tmp_path / "microns.csv")))
+
+
 def test_a_run_of_a_shape_from_a_file_is_known_by_its_contents(lift, tmp_path):
     (tmp_path / "a.py").write_text(BALL)
     (tmp_path / "b.py").write_text(BALL.replace("1.5", "1.6"))
@@ -372,6 +361,13 @@ def test_a_run_of_a_shape_from_a_file_is_known_by_its_contents(lift, tmp_path):
         ("def distance(points): pass\nlow = (0, 0)\nhigh = (1, 1)\n", "must be three numbers"),
         ("def distance(points:\n", "SyntaxError"),
         ("import numpy as np\nlow, high = (-2,) * 3, (2,) * 3\ndef distance(p): return 3 * p[:, 0]\n", "slope"),
+        (BALL.replace("0.1\n", "'fine'\n"), "could not convert"),
+        (BALL.replace("(-2.2,) * 3", "('a', 0, 0)"), "could not convert"),
+        (BALL.replace("- 1.5", "+ 1.5"), "at some nodes, inside"),
+        (BALL.replace("0.1\n", "0\n"), "spacing"),
+        (BALL.replace("0.1\n", "float('nan')\n"), "spacing"),
+        (BALL.replace("sum(axis=1)", "sum()"), "must give one distance"),
+        ("import sys\nsys.exit('I am a program')\n", "SystemExit: I am a program"),
     ],
 )
 def test_a_file_that_describes_no_body_is_refused(lift, tmp_path, text, reason):

@@ -65,6 +65,29 @@ def test_a_damaged_entry_is_built_anew_with_a_note(folder, damage, capsys):
     assert build.calls == 2 and capsys.readouterr().err == ""
 
 
+def test_no_changed_bit_of_an_entry_is_an_error_or_another_array(folder, capsys):
+    """Flags of encryption and compression, versions, names, sizes and contents: the lowest bit of each byte."""
+    cache.cached("bed", {}, 1, lambda: dict(x=np.arange(2.0)))
+    (entry,) = folder.iterdir()
+    whole, refused = entry.read_bytes(), 0
+    for at in range(len(whole)):
+        entry.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
+        found = cache.load(entry)
+        refused += found is None
+        assert found is None or np.array_equal(found["x"], [0, 1])
+    assert refused > 200 and capsys.readouterr().err.count("building it anew") == refused
+
+
+def test_an_array_in_place_of_an_entry_is_damage(folder, capsys):
+    build = Builder()
+    cache.cached("bed", {}, 1, build)
+    (entry,) = folder.iterdir()
+    with open(entry, "wb") as file:
+        np.save(file, np.zeros(3))
+    assert len(cache.cached("bed", {}, 1, build)) and build.calls == 2
+    assert "is damaged" in capsys.readouterr().err
+
+
 def test_an_unwritable_cache_costs_a_note_not_the_run(tmp_path, monkeypatch, capsys):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path / "file"))

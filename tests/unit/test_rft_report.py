@@ -93,6 +93,17 @@ def test_the_form_that_bodies_obey_is_told_from_the_other(form, other):
     assert one(found, "odd in β") is Verdict.REPRODUCED
 
 
+def test_plates_off_the_three_fourier_terms_are_told():
+    campaign = MadeUp("published")
+    found = verdicts(campaign)
+    assert one(found, "α_x by tilt") is one(found, "α_z by tilt") is Verdict.REPRODUCED
+    shallow = campaign.table["shape"] == "plate_22.5.csv"
+    campaign.table.loc[shallow, "lift"] += 0.05 * campaign.table.loc[shallow, "drag"]  # 17 of its errors
+    found = verdicts(campaign)
+    assert one(found, "α_x by tilt") is Verdict.REPRODUCED
+    assert one(found, "α_z by tilt") is Verdict.NOT_REPRODUCED
+
+
 def test_the_lift_of_half_cylinders_has_a_sign():
     for turned, verdict in ((False, Verdict.REPRODUCED), (True, Verdict.NOT_REPRODUCED)):
         found = verdicts(MadeUp("published", turned))
