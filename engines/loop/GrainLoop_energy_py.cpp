@@ -36,7 +36,7 @@ void bind_energy(GrainLoopClass& cls)
 		"elasticTangential, potential; dissipated: normalDamping, tangentialDamping, friction, opening; given: stiffening, "
 		"workOfBodies\n"
 		"(workByBody: id -> J), workOfWalls, workOfLoads, workOfCell, timeStep; initial; residual, turnover (sum of |changes|), "
-	    "closure = "
+		"closure = "
 		"|residual|/turnover");
 }
 
