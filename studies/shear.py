@@ -1,22 +1,23 @@
 """Shear: disks between sides that slide past each other show what stress a granular flow needs: mu(I) and phi(I).
 
-Homogeneous shear in two dimensions without gravity and without walls: v_x = shear_rate y in a cell whose images slide past each
-other (Lees, Edwards 1972). This is how Oba, Otsuki 2025 (appendix B) found the constants of
-mu(I) = mu_s + (mu_2 - mu_s)/(I_0/I + 1), I = shear_rate d sqrt(rho/p), for their drum. Disks and law are the drum's: diameters
-uniform in d to 1.2 d, linear spring and dashpot with k_n = 2e5 m g/d, k_t = 2/7 k_n, friction 0.5, restitution 0.92, where m is the
-mass of a disk of diameter d. Units are d, rho, g, though nothing falls: so numbers compare with the drum's.
+Homogeneous shear in two dimensions without gravity and without walls: v_x = shear_rate y in a cell whose images slide past
+each other (Lees, Edwards 1972). This is how Oba, Otsuki 2025 (appendix B) found the constants of
+mu(I) = mu_s + (mu_2 - mu_s)/(I_0/I + 1), I = shear_rate d sqrt(rho/p), for their drum. Disks and law are the drum's:
+diameters uniform in d to 1.2 d, linear spring and dashpot with k_n = 2e5 m g/d, k_t = 2/7 k_n, friction 0.5, restitution
+0.92, where m is the mass of a disk of diameter d. Units are d, rho, g, though nothing falls: numbers compare with the drum's.
 
-Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 and g_p = sqrt(m k_n) (da Cruz et al.,
-PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with shear_rate as a key of its own:
-there p follows, and with it I.
+Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 and g_p = sqrt(m k_n) (after
+da Cruz et al., PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with
+shear_rate as a key of its own: there p follows, and with it I.
 
-The pressure is a choice: grains count as stiff where k_n/P is large. 50 rho g d makes it 3,100; a pair of runs at half and twice
-the pressure, at equal I, shows what that changes (studies/RESULTS.md).
+The pressure is a choice: grains count as stiff where k_n/P is large. 100 rho g d makes it 1,570; runs at a quarter and four
+times the pressure, at equal I, show what that changes (studies/RESULTS.md).
 
 Measured are tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses, contacts of a
 grain, each with the error of a correlated series, and how far the velocity profile is from a straight line.
 
-Cost on one core: steps go as strain/I, some 10 us each with 600 disks; the demo at I = 0.1 takes seconds, I = 1e-3 a minute or two.
+Cost on one core: steps go as strain/I, some 20 to 40 us each with 600 disks (at large I half of it is search, since the sides
+are fast); the demo at I = 0.1 takes seconds, I = 1e-3 some minutes.
 
     scripts/run shear                                          the demo, I = 0.1
     scripts/run shear inertial_number=0.001 out=slow
@@ -63,7 +64,7 @@ class ShearParameters(StudyParameters):
     shear_rate: Optional[float] = quantity(
         None, "sqrt(g/d)", "dv_x/dy; auto: that of inertial_number at the pressure", gt=0
     )
-    pressure: float = quantity(50.0, "rho g d", "P to which the height answers", gt=0)
+    pressure: float = quantity(100.0, "rho g d", "P to which the height answers", gt=0)
     area_fraction: float = quantity(
         0.0, "-", "hold this area fraction in place of the pressure; 0: hold the pressure", ge=0, le=0.9
     )

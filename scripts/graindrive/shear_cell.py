@@ -1,4 +1,4 @@
-"""A periodic cell of disks that is sheared homogeneously, under a pressure or at an area fraction: scene, loop, and what it measures.
+"""A periodic cell of disks, sheared homogeneously under a pressure or at an area fraction: scene, loop, what it measures.
 
 Units are d, rho, g: a disk of diameter d has the mass pi/4.
 """
@@ -14,7 +14,7 @@ from .errors import UsageError
 DENSITY = 1.0  # rho
 MASS = math.pi / 4  # of a disk of diameter d [rho d^2]
 SMALLEST, LARGEST = 1.0, 1.2  # d, diameters are uniform between them
-SPACING = 1.25  # d, of the square lattice that disks begin on
+SPACING = 1.22  # d, of the square lattice that disks begin on
 JITTER = 0.02  # d, at most, in x and y
 ASPECT = 1.3  # rows over columns at first; the pressure makes the cell about square
 CLOSING_RATE = 0.1  # sqrt(g/d), |dL/dt|/L at which a cell goes to its area fraction
@@ -50,7 +50,7 @@ class ShearCell:
         return dict(normalStiffness=self.k_n, tangentialStiffness=self.k_n * 2 / 7, restitution=self.restitution)
 
     def check(self, dt, largest_overlap):
-        """Return the time step over the critical one of two smallest disks; UsageError where it is over 1 or grains are too soft."""
+        """Return the time step over the critical one of two smallest disks; UsageError over 1 or for grains that are too soft."""
         mass = MASS * SMALLEST**2
         at = engines.terms_of_law("springDashpot", self.given(), largest_overlap / 2, SMALLEST / 4, mass / 2)
         critical = engines.critical_step(at["stiffness"], at["dashpot"], mass / 2)
