@@ -29,6 +29,7 @@ struct SceneView {
 	std::vector<GrainState> grains;
 	std::vector<GrainContact> contacts;
 	Vector3r periods = Vector3r::Zero();  ///< lengths after which the box repeats [m], 0 where it does not
+	bool sheared = false;                 ///< images one period further in y are displaced along x, or move
 };
 
 /// Whatever can tell them: YADE's bodies and interactions, or GrainLoop.

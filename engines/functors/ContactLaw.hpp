@@ -8,7 +8,7 @@ namespace graindrive {
 /// Base of the functors, one for each law: reads the pair from YADE, asks the law, and gives YADE the forces. Its attributes are what
 /// the law is given of the grains' material.
 ///
-/// Velocities are YADE's leapfrog ones at n-1/2, positions at n, as in LAMMPS. Periodic cells may not deform (no velGrad).
+/// Velocities are YADE's leapfrog ones at n-1/2, positions at n, as in LAMMPS. In a cell that deforms (velGrad) the image of body 2 has its velocity.
 template <class Self, template <class> class Law_>
 class ContactLaw : public Registered<Self, yade::LawFunctor>, public Law_<Real>::Given {
 public:
@@ -42,12 +42,12 @@ public:
 		auto* phys = dynamic_cast<ContactPhys*>(iphys.get());
 		if (!phys) {  // from another Ip2. Raising would end the process: YADE calls this in an OpenMP loop
 			const Real friction = static_cast<const yade::FrictPhys&>(*iphys).tangensOfFrictionAngle;
-			const Real radius = pair_geometry(*this->scene, geom, id1).effective_radius();
+			const Real radius = pair_geometry(*this->scene, geom, *interaction).effective_radius();
 			const auto made = contact_phys_of(*this->scene, radius, id1, id2, friction);
 			iphys = made;
 			phys = made.get();
 		}
-		apply(geom, *phys, id1, id2);
+		apply(geom, *phys, *interaction);
 		return true;
 	}
 
@@ -63,18 +63,19 @@ public:
 		};
 		if (pair.solid)
 			return respond(laws::SolidAndSphere{ pair.normal, pair.overlap, pair.radius2, pair.contact_point - s1.pos, s1.vel,
-				s2.vel, s1.angVel, s2.angVel, phys.effectiveMass });
-		return respond(laws::SpherePair{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel, s2.vel, s1.angVel,
-			s2.angVel, phys.effectiveRadius, phys.effectiveMass });
+				s2.vel + pair.image_velocity, s1.angVel, s2.angVel, phys.effectiveMass });
+		return respond(laws::SpherePair{ pair.normal, pair.overlap, pair.radius1, pair.radius2, s1.vel,
+			s2.vel + pair.image_velocity, s1.angVel, s2.angVel, phys.effectiveRadius, phys.effectiveMass });
 	}
 
 private:
 	laws::LeverArm arm() const { return leverArm == "radius" ? laws::LeverArm::radius : laws::LeverArm::contact_point; }
 
-	void apply(const yade::ScGeom& geom, ContactPhys& phys, int id1, int id2) const
+	void apply(const yade::ScGeom& geom, ContactPhys& phys, const yade::Interaction& contact) const
 	{
 		yade::Scene& scene = *this->scene;
-		const auto answer = this->answer(scene, pair_geometry(scene, geom, id1), phys, id1, id2);
+		const int id1 = contact.getId1(), id2 = contact.getId2();
+		const auto answer = this->answer(scene, pair_geometry(scene, geom, contact), phys, id1, id2);
 		phys.normalForce = answer.normal_force2;
 		phys.shearForce = answer.tangential_force2;
 		phys.slip = answer.slip;

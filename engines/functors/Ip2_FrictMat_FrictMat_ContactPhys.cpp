@@ -61,7 +61,7 @@ void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material
 		throw std::invalid_argument(
 			std::string(class_name) + " needs a ScGeom; use Ig2_Sphere_Sphere_ScGeom and Ig2_Solid_Sphere_ScGeom");
 	const int id1 = interaction->getId1(), id2 = interaction->getId2();
-	const Real radius = pair_geometry(*scene, *geom, id1).effective_radius();
+	const Real radius = pair_geometry(*scene, *geom, *interaction).effective_radius();
 	interaction->phys = contact_phys_of(*scene, radius, id1, id2, friction_between(*first, *second));
 }
 

@@ -5,10 +5,22 @@
 
 namespace graindrive {
 
-PairGeometry pair_geometry(const yade::Scene& scene, const yade::ScGeom& geom, int id1)
+namespace {
+
+/// As YADE's own laws have it: what velGrad makes of the way to the image, unless velocities do not follow the cell (homoDeform = 0).
+Vector3r image_velocity(const yade::Scene& scene, const yade::Interaction& contact)
 {
-	const bool solid = is_solid((*scene.bodies)[id1]->shape.get());
-	return { geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, solid, geom.contactPoint };
+	if (!scene.isPeriodic || scene.cell->homoDeform == 0) return Vector3r::Zero();
+	return scene.cell->velGrad * (scene.cell->prevHSize * contact.cellDist.cast<Real>());
+}
+
+}  // namespace
+
+PairGeometry pair_geometry(const yade::Scene& scene, const yade::ScGeom& geom, const yade::Interaction& contact)
+{
+	const bool solid = is_solid((*scene.bodies)[contact.getId1()]->shape.get());
+	return { geom.normal, geom.penetrationDepth, geom.refR1, geom.refR2, solid, geom.contactPoint,
+		image_velocity(scene, contact) };
 }
 
 }  // namespace graindrive

@@ -12,12 +12,14 @@ struct PairGeometry {
 	Real radius1, radius2;   ///< [m]; of a solid there is none
 	bool solid = false;      ///< body 1 is a Solid
 	Vector3r contact_point;  ///< of a solid, the middle of the overlap in its own image [m]
+	Vector3r image_velocity =
+		Vector3r::Zero();  ///< of the image of body 2 that is met, against body 2, where the cell deforms [m/s]
 
 	Real effective_radius() const { return solid ? radius2 : laws::effective_radius(radius1, radius2); }
 };
 
-/// The pair of a contact whose body 1 has this id; a solid always stands first. Walls, facets and boxes of YADE's count as spheres of
+/// The pair of a contact; a solid always stands first. Walls, facets and boxes of YADE's count as spheres of
 /// the radius that their Ig2_ gives them, which is the sphere's.
-PairGeometry pair_geometry(const yade::Scene& scene, const yade::ScGeom& geom, int id1);
+PairGeometry pair_geometry(const yade::Scene& scene, const yade::ScGeom& geom, const yade::Interaction& contact);
 
 }  // namespace graindrive

@@ -18,7 +18,8 @@ struct Image {
 ///
 /// Images n periods further along the axis `across` are displaced by n `offset` along the axis `along`, and move with n `rate`:
 ///
-///   x(image) = x + n (L e_across + offset e_along),  v(image) = v + n rate e_along,  d offset/dt = rate
+///   x(image) = x + n (L e_across + offset e_along),  v(image) = v + n (growth e_across + rate e_along),
+///   d offset/dt = rate,  dL/dt = growth
 ///
 /// (Lees, Edwards, J. Phys. C 5, 1921 (1972)). With across = y, along = x the mean shear rate is dv_x/dy = rate/L_y.
 template <int D>
@@ -31,6 +32,7 @@ struct Cell {
 	int along = 0;          ///< axis of their displacement
 	double offset = 0;      ///< of the image one period further [m]
 	double rate = 0;        ///< velocity of that image [m/s]
+	double growth = 0;      ///< the same along `across`: the period there becomes longer [m/s]
 
 	double length(int k) const { return high[k] - low[k]; }
 	bool sheared() const { return across != none; }
@@ -53,16 +55,29 @@ struct Cell {
 		return reduced(at, [this](double x, int k, double period) { return std::floor((x - low[k]) / period); });
 	}
 
-	/// What a velocity, or a difference of velocities b - a, gains when it is seen from the image: -n rate e_along [m/s].
-	Vec<D> velocity_change(const Image<D>& image) const
+	/// Velocity of the image one period further along `across` [m/s].
+	Vec<D> image_velocity() const
 	{
-		Vec<D> change;
-		if (sheared()) change[along] = -image.periods[across] * rate;
-		return change;
+		Vec<D> v;
+		if (sheared()) v[along] = rate, v[across] = growth;
+		return v;
 	}
 
-	/// The shear after a time dt. Whole periods of the offset are left out: they displace no image.
-	void advance(double dt) { set_offset(offset + rate * dt); }
+	void set_image_velocity(const Vec<D>& v) { rate = v[along], growth = v[across]; }
+
+	/// What a velocity, or a difference of velocities b - a, gains when it is seen from the image: -n times that of the next one [m/s].
+	Vec<D> velocity_change(const Image<D>& image) const
+	{
+		return sheared() ? -image.periods[across] * image_velocity() : Vec<D>{};
+	}
+
+	/// The cell after a time dt. Whole periods of the offset are left out: they displace no image.
+	void advance(double dt)
+	{
+		if (!sheared()) return;
+		set_offset(offset + rate * dt);
+		high[across] += growth * dt;
+	}
 
 	void set_offset(double value)
 	{
@@ -110,8 +125,8 @@ void Cell<D>::check() const
 	require(is_periodic_axis(across) && is_periodic_axis(along) && across != along,
 		"a sheared cell needs two different periodic axes, across and along, from 0 for x to " + std::to_string(D - 1),
 		std::to_string(across) + " and " + std::to_string(along), "make both axes periodic, or set across to -1 for no shear");
-	require(std::isfinite(offset) && std::isfinite(rate), "offset and rate of a sheared cell must be finite",
-		Vec<2>{ offset, rate }, "correct them");
+	require(std::isfinite(offset) && std::isfinite(rate) && std::isfinite(growth),
+		"offset, rate and growth of a sheared cell must be finite", Vec<3>{ offset, rate, growth }, "correct them");
 }
 
 static_assert(std::is_trivially_copyable_v<Cell<2>> && std::is_trivially_copyable_v<Cell<3>>);

@@ -216,7 +216,7 @@ TEST(Cell, RefusesWhatIsNoCell)
 	EXPECT_TRUE(mentions(said([](Cell<3>& c) { c.along = 2; }), "two different periodic axes"));
 	EXPECT_TRUE(mentions(said([](Cell<3>& c) { c.across = 3; }), "got 3 and 0; make both axes periodic"));
 	EXPECT_TRUE(mentions(said([](Cell<3>& c) { c.periodic[0] = false; }), "got 2 and 0"));
-	EXPECT_TRUE(mentions(said([](Cell<3>& c) { c.rate = INFINITY; }), "must be finite, got (1.234, inf)"));
+	EXPECT_TRUE(mentions(said([](Cell<3>& c) { c.rate = INFINITY; }), "must be finite, got (1.234, inf, 0)"));
 }
 
 }  // namespace

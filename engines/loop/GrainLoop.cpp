@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engines/loop/yade_cell.hpp"
 #include "engines/seam/without_python.hpp"
 
 namespace graindrive {
@@ -69,7 +70,10 @@ void GrainLoop::build()
 void GrainLoop::note_what_was_built()
 {
 	built_watched_ = watched, built_periods_ = periods, built_dimensions_ = dimensions;
-	if (scene->isPeriodic) built_cell_ = scene->cell->hSize;
+	if (scene->isPeriodic) {
+		built_cell_ = followed_ = scene->cell->hSize;
+		built_deforming_ = loop::deforms(*scene->cell);
+	}
 	settings_changed_ = false;
 }
 
@@ -82,6 +86,7 @@ loop::Mirror& GrainLoop::running()
 		throw std::runtime_error(
 			"GrainLoop: bodies were added to or removed from O.bodies; call sync() before and read() after such a change");
 	hear_settings();
+	follow_cell();
 	mirror_->hear_bodies();
 	mirror_->bring_settings_of_step();
 	return *mirror_;
@@ -122,6 +127,7 @@ void GrainLoop::make_step()
 	mirror_->follow_bodies();
 	mirror_->take_outside_forces();
 	mirror_->close();
+	mirror_->take_next_flow();
 	mirror_->step();
 	mirror_->write_bodies();
 	if (someone_may_look()) sync();

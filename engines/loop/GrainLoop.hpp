@@ -153,6 +153,8 @@ private:
 	Vector3r built_periods_ = Vector3r::Zero();
 	int built_dimensions_ = 0;
 	Eigen::Matrix<Real, 3, 3> built_cell_ = Eigen::Matrix<Real, 3, 3>::Zero();
+	bool built_deforming_ = false;
+	Eigen::Matrix<Real, 3, 3> followed_ = Eigen::Matrix<Real, 3, 3>::Zero();  // O.cell.hSize that the loop knows
 
 	Real number(const std::string& name) const;
 	void check_material() const;
@@ -165,6 +167,7 @@ private:
 	bool someone_may_look() const;
 	void hear_settings();
 	void require_cell();
+	void follow_cell();
 };
 
 }  // namespace graindrive

@@ -3,6 +3,7 @@
 
 #include "engines/loop/GrainLoop.hpp"
 #include "engines/loop/checkpoint.hpp"
+#include "engines/loop/yade_cell.hpp"
 #include "engines/solids/Solid.hpp"
 
 namespace graindrive {
@@ -42,6 +43,37 @@ void put(const BodyRecord& r, yade::State& s)
 	std::copy(r.orientation, r.orientation + 4, s.ori.coeffs().data());
 }
 
+/// O.cell where it deforms.
+struct CellRecord {
+	int deforms = 0, homo_deform = 0, gradient_changed = 0;
+	Real numbers[7 * 9] = {};
+};
+
+/// visit(matrix) for all of a cell that decides how it goes on.
+template <class ACell, class Visit>
+void each_matrix(ACell& cell, Visit&& visit)
+{
+	for (auto* matrix :
+		{ &cell.trsf, &cell.refHSize, &cell.hSize, &cell.prevHSize, &cell.velGrad, &cell.nextVelGrad, &cell.prevVelGrad })
+		visit(*matrix);
+}
+
+CellRecord record(const yade::Cell& cell)
+{
+	CellRecord r{ loop::deforms(cell), cell.homoDeform, cell.velGradChanged, {} };
+	Real* to = r.numbers;
+	each_matrix(cell, [&](const auto& matrix) { to = std::copy(matrix.data(), matrix.data() + 9, to); });
+	return r;
+}
+
+void put(const CellRecord& r, yade::Cell& cell)
+{
+	if (!r.deforms) return;
+	cell.homoDeform = r.homo_deform, cell.velGradChanged = r.gradient_changed;
+	const Real* from = r.numbers;
+	each_matrix(cell, [&](auto& matrix) { std::copy(from, from + 9, matrix.data()), from += 9; });
+}
+
 /// An engine of O.engines; `attributes` and `state` of ours only.
 struct EngineRecord {
 	std::string name, attributes, state;
@@ -73,6 +105,7 @@ struct Surroundings {
 	loop::YadeBodies map;
 	std::vector<BodyRecord> bodies;
 	std::vector<EngineRecord> engines;
+	CellRecord cell;
 	long iter = 0;
 	Real time = 0;
 
@@ -82,7 +115,7 @@ struct Surroundings {
 		visit(saved_scene);
 		visit(map.grain_id), visit(map.grain_of_id), visit(map.body_id), visit(map.body_of_id), visit(map.known_bodies);
 		visit(map.frozen_id), visit(map.turned);
-		visit(bodies), visit(iter), visit(time);
+		visit(bodies), visit(cell), visit(iter), visit(time);
 		auto count = std::uint64_t(engines.size());
 		visit(count);
 		engines.resize(count);
@@ -95,6 +128,7 @@ Surroundings of(const yade::Scene& scene)
 	Surroundings all;
 	for (std::size_t id = 0; id < scene.bodies->size(); ++id) all.bodies.push_back(record(*scene.bodies, int(id)));
 	for (const auto& engine : scene.engines) all.engines.push_back(record(*engine));
+	if (scene.isPeriodic) all.cell = record(*scene.cell);
 	all.iter = scene.iter, all.time = scene.time;
 	return all;
 }
@@ -147,11 +181,12 @@ std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 	return all;
 }
 
-std::string misfit(GrainLoop& saved, GrainLoop& here)
+/// Periods of a cell that deforms follow it.
+std::string misfit(GrainLoop& saved, GrainLoop& here, bool periods_follow)
 {
 	const auto before = physics(saved), now = physics(here);
 	for (std::size_t k = 0; k < before.size(); ++k)
-		if (before[k].second != now[k].second)
+		if (before[k].second != now[k].second && !(periods_follow && before[k].first == "periods"))
 			return "was written with GrainLoop." + before[k].first + " = " + before[k].second + ", the scene has " +
 			       now[k].second;
 	return "";
@@ -204,7 +239,7 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 	GrainLoop settings;
 	for (std::size_t e = 0; e < saved.engines.size(); ++e)
 		if (scene->engines[e].get() == this) settings.unpack(saved.engines[e].state);
-	require_fit(misfit(settings, *this));
+	require_fit(misfit(settings, *this, saved.cell.deforms));
 	require_fit(misfit_of_time_steps(restored->time_step(), scene->dt));
 
 	for (std::size_t id = 0; id < saved.bodies.size(); ++id)
@@ -212,12 +247,13 @@ void GrainLoop::restore_checkpoint(const std::string& path)
 	for (std::size_t e = 0; e < saved.engines.size(); ++e)
 		if (auto* ours = dynamic_cast<seam::Stateful*>(scene->engines[e].get()); ours && scene->engines[e].get() != this)
 			ours->unpack(saved.engines[e].state);
+	if (scene->isPeriodic) put(saved.cell, *scene->cell);
 	scene->iter = saved.iter, scene->time = saved.time;
 	mirror_ = std::move(restored);
 	mirror_->map = saved.map;
 	read_from_ = scene;
 	run_end_ = -2;
-	watched = settings.watched, loads = settings.loads;
+	watched = settings.watched, loads = settings.loads, periods = settings.periods;
 	note_what_was_built();
 	mirror_->go_on_from_checkpoint();
 	trackEnergy = mirror_->energies() != nullptr;

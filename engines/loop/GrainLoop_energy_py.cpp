@@ -18,6 +18,7 @@ py::dict energy(GrainLoop& loop)
 	all["normalDamping"] = e.normal_damping, all["tangentialDamping"] = e.tangential_damping;
 	all["friction"] = e.friction, all["opening"] = e.opening, all["stiffening"] = e.stiffening;
 	all["workOfBodies"] = e.work_of_bodies, all["workOfWalls"] = e.work_of_walls, all["workOfLoads"] = e.work_of_loads;
+	all["workOfCell"] = e.work_of_cell;
 	for (std::size_t b = 0; b < works.size(); ++b)
 		if (running->map.body_id[b] >= 0) by_body[running->map.body_id[b]] = works[b];
 	all["workByBody"] = by_body;
@@ -34,7 +35,8 @@ void bind_energy(GrainLoopClass& cls)
 		"the energy ledger [J] since trackEnergy was set, at the last step: kineticTranslation, kineticRotation, elasticNormal,\n"
 		"elasticTangential, potential; dissipated: normalDamping, tangentialDamping, friction, opening; given: stiffening, "
 		"workOfBodies\n"
-		"(workByBody: id -> J), workOfWalls, workOfLoads, timeStep; initial; residual, turnover (sum of |changes|), closure = "
+		"(workByBody: id -> J), workOfWalls, workOfLoads, workOfCell, timeStep; initial; residual, turnover (sum of |changes|), "
+		"closure = "
 		"|residual|/turnover");
 }
 

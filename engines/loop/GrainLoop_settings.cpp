@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engines/loop/GrainLoop.hpp"
+#include "engines/loop/yade_cell.hpp"
 
 namespace graindrive {
 
@@ -50,20 +51,30 @@ void GrainLoop::hear_settings()
 	met_engines_.clear();  // `trusted` may be another
 }
 
-/// YADE's cell may deform; GrainLoop's box may not.
+/// The box may be put elsewhere or deform; the loop of disks follows (yade_cell.hpp), and its periods are those of the cell.
 void GrainLoop::require_cell()
 {
 	if (!scene->isPeriodic) return;
 	const yade::Cell& cell = *scene->cell;
-	if (!cell.velGrad.isZero(0) || !cell.nextVelGrad.isZero(0))
-		throw std::invalid_argument(
-			"GrainLoop: O.cell.velGrad deforms the cell, which GrainLoop does not do; set it to zero, or use YADE's loop");
-	Eigen::Matrix<Real, 3, 3> off_diagonal = cell.hSize;
-	off_diagonal.diagonal().setZero();
-	if (!off_diagonal.isZero(0))
-		throw std::invalid_argument("GrainLoop: O.cell is tilted (its hSize has parts off the diagonal); only a box that is not "
-									"sheared can be taken over: O.cell.setBox(x, y, z)");
-	if (mirror_ && cell.hSize != built_cell_) require_periods();
+	loop::require_flow(cell, dimensions);
+	if (loop::deforms(cell) && periods[1] > 0) periods[1] = cell.hSize(1, 1);
+	if (!mirror_ || cell.hSize == built_cell_) return;
+	if (built_deforming_) built_periods_[1] = periods[1];
+	require_periods();
+}
+
+/// Takes tilt, height and velocity of O.cell over where YADE has deformed it since.
+void GrainLoop::follow_cell()
+{
+	if (!scene->isPeriodic || !loop::deforms(*scene->cell)) return;
+	if (!built_deforming_) {
+		sync();
+		build();
+		return;
+	}
+	if (scene->cell->hSize == followed_) return;
+	followed_ = scene->cell->hSize;
+	mirror_->follow_cell();
 }
 
 std::vector<loop::Wall<3>> GrainLoop::kept_walls() const

@@ -71,10 +71,10 @@ SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
 /// A contact at a step: `before` is what the law was told, `after` belongs to the half step after it.
 template <int D>
 void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
-	const RelativeMotion<D>& after, const Tangent<D>& slip)
+	const RelativeMotion<D>& after, const Tangent<D>& slip, const Vec<D>& image_before, const Vec<D>& image_after)
 {
-	met.push_back(
-		{ key, at.overlap, radius, mass, at.normal, before.normal, after.normal, before.tangential, after.tangential, slip });
+	met.push_back({ key, at.overlap, radius, mass, at.normal, before.normal, after.normal, before.tangential, after.tangential,
+		slip, image_before, image_after });
 }
 
 template <int D>
@@ -86,6 +86,11 @@ void Books<D>::meet_pairs()
 		const Row<D>&a = rows[i], &b = rows[j];
 		const Placement<D> at = placement<D>(a, b, state.scene.cell);
 		if (!(at.overlap > 0)) continue;
+		const Cell<D>& cell = state.scene.cell;
+		const double layers = cell.sheared() ? -cell.nearest(b.x - a.x).periods[cell.across] : 0;
+		const Vec<D> image_before = layers * cell.image_velocity(), image_after = layers * state.flow.image_velocity;
+		SurfaceMotion<D> b_before = motion_of(b), b_after = motion_after(j);
+		b_before.velocity += image_before, b_after.velocity += image_after;
 		const std::uint64_t one = std::min(state.index_of[i], state.index_of[j]),
 							other = std::max(state.index_of[i], state.index_of[j]);
 		const double mass = [&] {
@@ -93,8 +98,8 @@ void Books<D>::meet_pairs()
 			return laws::effective_mass(state.inverse_mass(i) + state.inverse_mass(j));
 		}();
 		meet(one << 32 | other, at, laws::effective_radius(a.radius, b.radius), mass,
-			relative_motion(at.normal, motion_of(a), motion_of(b)), relative_motion(at.normal, motion_after(i), motion_after(j)),
-			slip);
+			relative_motion(at.normal, motion_of(a), b_before), relative_motion(at.normal, motion_after(i), b_after), slip,
+			image_before, image_after);
 	}
 }
 
@@ -203,6 +208,21 @@ void Books<D>::move_bodies(LedgerMotion& motion) const
 }
 
 template <int D>
+void Books<D>::deform_cell(LedgerMotion& motion) const
+{
+	if (!changes_flow(state)) return;
+	for (std::uint32_t at = 0; at < state.n_free; ++at) {
+		const Row<D>&was = rows[at], &is = state.rows[at];
+		const double half_mass = 0.5 / state.inverse_mass(at);
+		const Vec<D> kick = flow_kick(state, was.x);
+		motion.cell.before += half_mass * dot(kick, was.v), motion.cell.after += half_mass * dot(kick, is.v);
+		if (!state.scene.rotation) continue;
+		const Spin<D> turn = state.flow.spin * (was.radius / state.scene.spin_response);
+		motion.cell.before += half_mass * inner(turn, was.surface), motion.cell.after += half_mass * inner(turn, is.surface);
+	}
+}
+
+template <int D>
 void Books<D>::book()
 {
 	met.clear();
@@ -211,6 +231,7 @@ void Books<D>::book()
 	meet_surfaces(motion);
 	move_grains(motion);
 	move_bodies(motion);
+	deform_cell(motion);
 	ledger.book(met, motion);
 }
 

@@ -24,7 +24,7 @@ public:
 	/// Before anything moves.
 	template <class Neighbours>
 	void remember(const Neighbours& pairs);
-	/// When all has moved.
+	/// When all has moved; the cell and its images are still as they were.
 	void book();
 
 private:
@@ -42,12 +42,13 @@ private:
 
 	SurfaceMotion<D> motion_after(std::uint32_t row) const;
 	void meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
-		const RelativeMotion<D>& after, const Tangent<D>& slip);
+		const RelativeMotion<D>& after, const Tangent<D>& slip, const Vec<D>& image_before = {}, const Vec<D>& image_after = {});
 	void meet_pairs();
 	void meet_surfaces(LedgerMotion& motion);
 	void meet_surface(const SurfaceTouch<D>& touch);
 	void move_grains(LedgerMotion& motion) const;
 	void move_bodies(LedgerMotion& motion) const;
+	void deform_cell(LedgerMotion& motion) const;
 	void weigh(LedgerMotion& motion, double mass, const Vec<D>& place, const Vec<D>& v, const Vec<D>& v_after,
 		const std::array<bool, D>& along) const;
 };

@@ -129,6 +129,9 @@ void Budgets<D>::allow_travel()
 		state.allowed[p] = std::min(std::max(expected[p] * state.scene.dt * state.pace, least), most);
 	for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
 		if (state.body_fixed[b]) state.allowed[state.n_blocks() + b] = 0;
+	if (state.scene.cell.sheared())
+		state.images_may_go =
+			std::clamp(length(state.flow.image_velocity) * state.scene.dt * state.pace, least, std::max(least, most));
 }
 
 /// Sets how many steps to aim at between selections. A pair that is selected and does not touch costs at every step, a selection once:
@@ -150,7 +153,7 @@ double Budgets<2>::approach_before_selection() const
 {
 	double farthest = 0;
 	for (std::size_t p = 0; p < displaced.size(); ++p) farthest = std::max(farthest, displaced[p] + state.allowed[p]);
-	return 2 * farthest;
+	return 2 * farthest + state.images_went_since_search + state.images_may_go;
 }
 
 /// In space by what neighbours have gone differently.
@@ -168,7 +171,7 @@ double Budgets<D>::fastest_approach() const
 	if (D == 2 || neighbours.empty()) {
 		double fastest = 0;
 		for (std::size_t p = 0; p < speed.size(); ++p) fastest = std::max(fastest, length(drift_of(p)) + speed[p]);
-		return 2 * fastest;
+		return 2 * fastest + length(state.flow.image_velocity);
 	}
 	double fastest = 0;
 	for (const auto& [a, b] : neighbours) fastest = std::max(fastest, speed[a] + speed[b] + length(drift_of(a) - drift_of(b)));
@@ -187,12 +190,21 @@ void Budgets<D>::spend(double drift)
 		way += body_speed(b) * drift;
 		state.selection_due |= way > state.allowed[state.n_blocks() + b];
 	}
+	if (state.scene.cell.sheared()) spend_on_images(length(state.scene.cell.image_velocity()) * drift);
+}
+
+template <int D>
+void Budgets<D>::spend_on_images(double way)
+{
+	state.images_went += way, state.images_went_since_search += way;
+	state.selection_due |= state.images_went > state.images_may_go;
 }
 
 template <int D>
 void Budgets<D>::begin_selection()
 {
 	std::fill(state.travelled.begin(), state.travelled.end(), 0);
+	state.images_went = 0;
 	state.selection_due = false;
 	state.selected_at = state.steps;
 	++state.selections;

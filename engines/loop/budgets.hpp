@@ -38,8 +38,10 @@ public:
 	/// What a party may have gone since the last selection, or may go until the next [m].
 	double way(std::size_t party) const;
 	double way_to_come(std::size_t party) const;
-	/// After a step: what blocks have travelled the kernels know; here bodies.
+	/// After a step: what blocks have travelled the kernels know; here bodies and images.
 	void spend(double drift);
+	/// Images across the side have gone so much further [m].
+	void spend_on_images(double way);
 	void begin_selection();
 
 private:

@@ -16,7 +16,7 @@
 
 namespace graindrive::loop {
 
-constexpr std::uint64_t checkpoint_version = 9;
+constexpr std::uint64_t checkpoint_version = 10;
 
 /// What a file holds, in the 16 letters that it begins with.
 enum class Contents { loop, yade_scene };

@@ -17,7 +17,7 @@ double booked(Halves now, double& pending) { return std::exchange(pending, now.a
 template <int D>
 struct EnergyLedger<D>::Sums {
 	double elastic_normal = 0, elastic_tangential = 0;  // energies at the step
-	Halves normal_damping, tangential_damping;
+	Halves normal_damping, tangential_damping, cell;
 	double friction = 0, opening = 0, stiffening = 0;
 	double elastic_work = 0;  // of the normal springs on the grains
 	double turning = 0;       // tangential work that differs because the contact turned
@@ -45,11 +45,20 @@ typename EnergyLedger<D>::Past EnergyLedger<D>::meet(const MetContact<D>& c, con
 	sums.normal_damping.before += normal_dashpot * c.v_n_before * half;
 	sums.normal_damping.after += normal_dashpot * c.v_n_after * half;
 	Past next{ c.key, c.n, {}, 0, {}, {}, terms.elastic * c.v_n_after * half };
-	if (!with_friction) return next;
+	const auto book_cell = [&](const Tangent<D>& tangential) {
+		const Vec<D> force = force_on_first(c.n, terms.elastic - normal_dashpot, tangential);
+		sums.cell.before += geometry::dot(force, c.image_before) * half;
+		sums.cell.after += geometry::dot(force, c.image_after) * half;
+	};
+	if (!with_friction) {
+		book_cell({});
+		return next;
+	}
 
 	const auto contact = kinematics<D>(
 		{ c.n, c.overlap }, RelativeMotion<D>{ c.v_n_before, c.v_t_before }, c.effective_radius, c.effective_mass, dt);
 	const auto response = std::visit([&](const auto& l) { return answer_of(l(contact, for_law(c.slip_before))); }, law);
+	book_cell(response.tangential);
 	const Tangent<D> dashpot = response.slipping ? Tangent<D>{} : terms.tangential_dashpot * c.v_t_before;
 	next.spring_force = -response.tangential - dashpot;
 	next.stiffness = terms.tangential_stiffness;
@@ -97,7 +106,8 @@ void EnergyLedger<D>::book(std::vector<MetContact<D>>& contacts, const LedgerMot
 	const double normal_damping = booked(sums.normal_damping, pending.normal_damping),
 				 tangential_damping = booked(sums.tangential_damping, pending.tangential_damping),
 				 falling = booked(motion.falling, pending.falling), walls = booked(motion.walls, pending.walls),
-				 loads = booked(motion.loads, pending.loads);
+				 loads = booked(motion.loads, pending.loads),
+				 cell = booked({ motion.cell.before + sums.cell.before, motion.cell.after + sums.cell.after }, pending.cell);
 	body_work.resize(motion.bodies.size());
 	pending_bodies.resize(motion.bodies.size());
 	std::vector<double> bodies(motion.bodies.size());
@@ -121,6 +131,7 @@ void EnergyLedger<D>::book(std::vector<MetContact<D>>& contacts, const LedgerMot
 	enter(now.friction, now.friction + sums.friction), enter(now.opening, now.opening + sums.opening);
 	enter(now.stiffening, now.stiffening + sums.stiffening);
 	enter(now.work_of_walls, now.work_of_walls + walls), enter(now.work_of_loads, now.work_of_loads + loads);
+	enter(now.work_of_cell, now.work_of_cell + cell);
 	for (std::size_t b = 0; b < bodies.size(); ++b) {
 		body_work[b] += bodies[b];
 		now.work_of_bodies += bodies[b];

@@ -13,7 +13,9 @@
 ///   stiffening     1/2 s_{n-1} s_n (k_n - k_{n-1}): Hertz's k_t grows with delta, so a stretched spring gains and loses energy with the
 ///                  load although no force does work. The law is not conservative in this; the term can have either sign.
 ///   opening        1/2 k_t s^2 of contacts that part while their spring is stretched
-///   work           of driven degrees of freedom, walls, loads and forces from outside on the grains
+///   work           of driven degrees of freedom, walls, loads and forces from outside on the grains, and of a cell that deforms: by
+///                  contacts across its side, F on the owner times the velocity of the partner's image against the partner; by
+///                  grains that are wrapped, 1/2 m (v'^2 - v^2); by what a change of the flow gives all grains at once
 ///   time step      an elastic force's work in steps is not exactly its closed form, most of all in the steps in which a contact begins
 ///                  and ends; that difference, and a contact's turning between two steps, contact by contact: what leapfrog itself adds
 /// Nothing is a remainder of the whole: forces are computed anew from the motion, and `residual` is what all entries together fail to explain. It is
@@ -39,7 +41,8 @@ struct MetContact {
 	Vec<D> n;                      ///< the step's normal
 	double v_n_before, v_n_after;  ///< at the step's normal
 	Tangent<D> v_t_before, v_t_after;
-	Tangent<D> slip_before;  ///< tangential spring that the step began with
+	Tangent<D> slip_before;            ///< tangential spring that the step began with
+	Vec<D> image_before, image_after;  ///< velocity of the second one's image against itself, in a sheared cell [m/s]
 };
 
 /// All that is no contact.
@@ -47,6 +50,7 @@ struct LedgerMotion {
 	double translation = 0, rotation = 0, potential = 0;  ///< [J]
 	Halves falling;                                       ///< change of potential along periodic axes
 	Halves walls, loads;                                  ///< work on the grains
+	Halves cell;                                          ///< by what a change of the flow gives all grains at once
 	std::vector<Halves> bodies;
 };
 
@@ -56,15 +60,16 @@ struct Energies {
 	double normal_damping = 0, tangential_damping = 0, friction = 0, opening = 0;  ///< dissipated
 	double stiffening = 0;                                                         ///< given to springs by the load
 	double work_of_bodies = 0, work_of_walls = 0, work_of_loads = 0;
-	double initial = 0;    ///< sum of the energies when the ledger was opened
-	double turnover = 0;   ///< sum of the |changes| of all entries
-	double time_step = 0;  ///< given by the leapfrog itself
+	double work_of_cell = 0;  ///< of a cell that deforms: V sum of stress times velocity gradient
+	double initial = 0;       ///< sum of the energies when the ledger was opened
+	double turnover = 0;      ///< sum of the |changes| of all entries
+	double time_step = 0;     ///< given by the leapfrog itself
 
 	double stored() const { return translation + rotation + elastic_normal + elastic_tangential + potential; }
 	double residual() const
 	{
 		return stored() + normal_damping + tangential_damping + friction + opening - stiffening - work_of_bodies - work_of_walls -
-		       work_of_loads - time_step - initial;
+		       work_of_loads - work_of_cell - time_step - initial;
 	}
 };
 
@@ -75,6 +80,14 @@ public:
 
 	/// Books one step. Sorts the contacts by key, so that sums do not depend on where they lie.
 	void book(std::vector<MetContact<D>>& contacts, const LedgerMotion& motion);
+
+	/// A grain is wrapped across a sheared side and goes on as its image: what that is faster the cell has given it.
+	void see_from_image(double inverse_mass, const Vec<D>& velocity, const Vec<D>& of_image)
+	{
+		if (steps == 0) return;  // the energy that the ledger opens with is yet to come
+		const double given = (geometry::squared_norm(of_image) - geometry::squared_norm(velocity)) / (2 * inverse_mass);
+		now.work_of_cell += given, now.turnover += std::abs(given);
+	}
 
 	/// From here on the ledger explains the motion by another law; for tests of the ledger itself.
 	void suppose(const ContactLaw& other) { law = other; }
@@ -103,7 +116,7 @@ private:
 		double elastic_after;     // half of the normal spring's work in the coming interval
 	};
 	struct Pending {
-		double normal_damping = 0, tangential_damping = 0, falling = 0, walls = 0, loads = 0;
+		double normal_damping = 0, tangential_damping = 0, falling = 0, walls = 0, loads = 0, cell = 0;
 	};
 
 	ContactLaw law;

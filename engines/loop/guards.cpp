@@ -199,7 +199,19 @@ void check_images(const Scene<D>& scene)
 }
 
 /// What only disks may have.
-void check_dimension(const Scene<2>&) {}
+void check_dimension(const Scene<2>& scene)
+{
+	if (!scene.cell.sheared()) return;
+	scene.cell.check();
+	require(scene.cell.across == 1 && scene.cell.along == 0,
+		"a sheared cell of disks flows along x and is sheared across y, got the axes ", scene.cell.along, " and ",
+		scene.cell.across, "; turn the scene");
+	require(scene.bodies.empty(), "a sheared cell knows free disks alone, got ", scene.bodies.size(),
+		" bodies (clumps, solids, disks that are driven, blocked, large or watched); take them out, or use YADE's own loop");
+	require(scene.walls.empty(), "a sheared cell has no walls, got ", scene.walls.size(), "; take them out");
+	require(scene.damping == 0, "non-viscous damping knows no mean flow, got damping ", scene.damping,
+		" in a sheared cell; set it to 0, or use YADE's own loop");
+}
 void check_dimension(const Scene<3>& scene)
 {
 	require(std::visit([](const auto& law) { return laws::is_for_spheres(law); }, scene.law),
@@ -207,7 +219,8 @@ void check_dimension(const Scene<3>& scene)
 		laws::name_of(scene.law), "; take one of those, or YADE's own loop");
 	require(scene.damping == 0, "the loop over spheres knows no non-viscous damping, got damping ", scene.damping,
 		"; set it to 0, or use YADE's own loop");
-	require(!scene.cell.sheared(), "the loop knows no sheared cell yet, got one that is; set across to -1");
+	require(
+		!scene.cell.sheared(), "the loop over spheres knows no sheared cell, got one that is; set across to -1, or take disks");
 	require(scene.grains.size() < 30'000'000, "a scene may have at most 30 million spheres, got ", scene.grains.size());
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engines/loop/mirror_of.hpp"
+#include "engines/loop/yade_cell.hpp"
 
 namespace graindrive::loop {
 
@@ -19,6 +20,8 @@ Scene<D> MirrorOf<D>::settings_of(const GrainLoop& engine)
 	s.threads = engine.threads;
 	s.skin = engine.skin;
 	for (int k = 0; k < D; ++k) s.cell.high[k] = engine.periods[k], s.cell.periodic[k] = engine.periods[k] > 0;
+	if constexpr (D == 2)
+		if (engine.scene->isPeriodic && deforms(*engine.scene->cell)) read_flow(*engine.scene->cell, s.cell);
 	return s;
 }
 
@@ -102,6 +105,30 @@ void MirrorOf<D>::compute_body_forces()
 	guarded([&] { stepper->compute_body_forces(); });
 }
 
+template <>
+void MirrorOf<3>::follow_cell()
+{
+}
+
+template <>
+void MirrorOf<2>::follow_cell()
+{
+	Cell<2> cell = stepper->settings().cell;
+	read_flow(*scene().cell, cell);
+	stepper->follow_cell(cell);
+}
+
+template <>
+void MirrorOf<3>::take_next_flow()
+{
+}
+
+template <>
+void MirrorOf<2>::take_next_flow()
+{
+	if (stepper->settings().cell.sheared()) stepper->set_flow(loop::take_next_flow(*scene().cell));
+}
+
 template <int D>
 void MirrorOf<D>::step()
 {
@@ -161,8 +188,10 @@ void MirrorOf<D>::write_grain(std::size_t g)
 	if (now.body != free_grain) {  // beside its clump, as YADE has it
 		place = stepper->bodies()[now.body].place + stepper->arm(g);
 	} else {
+		const bool sheared =
+			stepper->settings().cell.sheared();  // there an image has a velocity of its own: bodies show the loop's
 		for (int k = 0; k < D; ++k) {
-			const Real period = engine.periods[k];
+			const Real period = sheared ? 0 : engine.periods[k];
 			place[k] = period > 0 ? now.place[k] + period * std::nearbyint((state.pos[k] - now.place[k]) / period) : now.place[k];
 		}
 	}

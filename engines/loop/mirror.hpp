@@ -42,6 +42,9 @@ public:
 	virtual void compute_body_forces() = 0;
 	virtual void follow_bodies() = 0;
 	virtual void take_outside_forces() = 0;
+	/// O.cell as it is at the present positions; what was set for the step that comes.
+	virtual void follow_cell() = 0;
+	virtual void take_next_flow() = 0;
 	virtual void step() = 0;
 	virtual void write_bodies() = 0;
 	/// Everybody has been shown all bodies since somebody may have written into them.

@@ -26,6 +26,8 @@ public:
 	void compute_body_forces() override;
 	void follow_bodies() override;
 	void take_outside_forces() override;
+	void follow_cell() override;
+	void take_next_flow() override;
 	void step() override;
 	void write_bodies() override;
 	void close() override { open = false; }

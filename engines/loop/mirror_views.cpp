@@ -26,6 +26,7 @@ void MirrorOf<D>::look(SceneView& view, bool with_contacts)
 	view.grains.clear();
 	view.contacts.clear();
 	view.periods = engine.periods;
+	view.sheared = stepper->settings().cell.sheared();
 	const Scene<D>& known = stepper->settings();
 	for (std::size_t g = 0; g < map.grain_id.size(); ++g) {
 		const Grain<D> now = stepper->grain(g);

@@ -18,6 +18,13 @@ struct Member {
 	int body;      ///< index in `Scene::bodies`
 };
 
+/// How a sheared cell deforms in a step, and what that does to grains at once.
+template <int D>
+struct Flow {
+	Vec<D> image_velocity;  ///< of the image one period further across the flow [m/s]
+	Spin<D> spin{};         ///< what all grains' spins gain in this step, where the shear rate changes [rad/s]
+};
+
 /// A force and a torque from outside on a free grain.
 template <int D>
 struct Push {
@@ -76,6 +83,11 @@ struct State {
 	double pace = 40;                        ///< steps between selections that budgets are made for
 	bool selection_due = true;
 
+	// Images across a sheared side move by themselves; in the plane.
+	Flow<D> flow;                               ///< of the cell in the step that comes
+	double images_went = 0, images_may_go = 0;  ///< since the last selection, and until the next one [m]
+	double images_went_since_search = 0;        ///< [m]
+
 	std::vector<SurfaceTouch<D>> touches;  ///< near surfaces: by surface, then by grain
 	std::vector<Push<D>> pushes;
 	Guards<D> guards;
@@ -112,6 +124,24 @@ struct State {
 	}
 };
 
+/// True if a sheared cell flows otherwise in the step that comes than in the last one.
+template <int D>
+bool changes_flow(const State<D>& state)
+{
+	return state.scene.cell.sheared() &&
+	       (state.flow.image_velocity != state.scene.cell.image_velocity() || state.flow.spin != Spin<D>{});
+}
+
+/// What the velocity of a grain gains where the flow changes [m/s]: its height over the period times what the image gains there, so
+/// that a grain and its images gain the same against the mean flow.
+template <int D>
+Vec<D> flow_kick(const State<D>& state, const Vec<D>& at)
+{
+	const Cell<D>& cell = state.scene.cell;
+	const double height = (at[cell.across] - cell.low[cell.across]) / cell.length(cell.across);
+	return height * (state.flow.image_velocity - cell.image_velocity());
+}
+
 /// Hands every part of a state to `visit`, in one order: what Packer and Unpacker make a file of. How many threads work decides nothing.
 template <class Visitor, class AState>
 void visit_state(Visitor&& visit, AState& s)
@@ -128,6 +158,7 @@ void visit_state(Visitor&& visit, AState& s)
 	visit(s.searched_at), visit(s.skin);
 	visit(s.travelled), visit(s.allowed), visit(s.drifts), visit(s.selected_at), visit(s.horizon), visit(s.pace),
 		visit(s.selection_due);
+	visit(s.flow), visit(s.images_went), visit(s.images_may_go), visit(s.images_went_since_search);
 	visit(s.touches), visit(s.pushes), visit(s.guards);
 }
 

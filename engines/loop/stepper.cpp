@@ -12,6 +12,7 @@ Stepper<D>::Stepper(const Scene<D>& scene)
 	state.scene = scene;
 	check_scene(scene);
 	check_surfaces(scene);
+	state.flow.image_velocity = scene.cell.image_velocity();
 	arrange_rows();
 	set_up();
 }
@@ -160,6 +161,7 @@ void Stepper<D>::look_before()
 		if (state.guards.every > 0 && (moved_by_hand || state.steps % state.guards.every == 0)) guards.check(pairs, surfaces);
 		moved_by_hand = false;
 		surfaces.compute_forces();
+		if (state.scene.cell.sheared()) pairs.see_cell();
 		hand_outside_forces_over();
 		if (books) books->remember(pairs);
 	} catch (...) {
@@ -188,13 +190,40 @@ void Stepper<D>::finish()
 			const std::uint32_t row = state.row_of[push.grain];
 			kick_grain(row, push.force, push.torque / state.rows[row].radius);
 		}
+	change_flow();
 	if (books) books->book();
+	if (state.scene.cell.sheared()) {
+		state.scene.cell.set_image_velocity(state.flow.image_velocity);
+		state.scene.cell.advance(pairs.motion().drift);
+		state.flow.spin = {};
+	}
 	for (const char beyond : thread_beyond) state.selection_due |= beyond != 0;
 	budgets.spend(pairs.motion().drift);
 	++state.steps;
 	body_forces_known = false;
 	drifted = pairs.motion().drift;
 	laid_out_since_forces = false;
+}
+
+/// As after a force that acts in this step alone; where the step has half a kick and moves nothing, with half of it.
+template <int D>
+void Stepper<D>::change_flow()
+{
+	if (!changes_flow(state)) return;
+	const StepMotion<D>& motion = pairs.motion();
+	const double part = motion.drift > 0 ? 1 : 0.5;
+	double farthest = 0;
+	for (std::uint32_t at = 0; at < state.n_free; ++at) {
+		Row<D>& row = state.rows[at];
+		const Vec<D> kick = part * flow_kick<D>(state, row.x - row.v * motion.drift);
+		row.v += kick, row.x += kick * motion.drift;
+		if (state.scene.rotation) row.surface += state.flow.spin * (part * row.radius);
+		farthest = std::max(farthest, length(kick) * motion.drift);
+	}
+	for (std::uint32_t block = 0; block < state.n_blocks(); ++block) {
+		state.travelled[block] += farthest;
+		state.selection_due |= state.travelled[block] > state.allowed[block];
+	}
 }
 
 /// One free grain after the sweep; `turning` is torque over radius [N].

@@ -98,6 +98,11 @@ public:
 	const EnergyLedger<D>* energy_ledger() const { return books ? &books->ledger : nullptr; }
 	EnergyLedger<D>* energy_ledger() { return books ? &books->ledger : nullptr; }
 
+	/// How the cell flows in the step that comes; grains follow a change at once, each with its height.
+	void set_flow(const Flow<D>& flow) { state.flow = flow; }
+	/// A sheared cell as others have it now, where it may differ from what this loop has made of it.
+	void follow_cell(const Cell<D>& cell);
+
 	double kinetic_energy() const;    ///< of free grains, translation and rotation, at the half step [J]
 	double kinetic_energy_on_step();  ///< the same with the velocities of the whole step [J]
 
@@ -143,6 +148,7 @@ private:
 	void finish();
 	void hand_outside_forces_over();
 	void take_back_outside_forces();
+	void change_flow();
 	void kick_grain(std::uint32_t row, const Vec<D>& force, const Spin<D>& turning);
 	void gather_body_forces();
 

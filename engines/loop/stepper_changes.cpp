@@ -36,6 +36,18 @@ void Stepper<D>::set_velocity(std::size_t body, const Vec<D>& velocity, const Sp
 	rigid.set_velocity(body, velocity, spin);
 }
 
+/// The loop's own cell differs by round-off, or because someone has put the sides elsewhere: that counts as way of the images.
+template <int D>
+void Stepper<D>::follow_cell(const Cell<D>& cell)
+{
+	Cell<D>& own = state.scene.cell;
+	if (!own.sheared() || body_forces_known) return;
+	Vec<D> way = cell.high - own.high;
+	way[own.along] = std::remainder(cell.offset - own.offset, own.length(own.along));
+	own = cell;
+	budgets.spend_on_images(length(way));
+}
+
 template <int D>
 void Stepper<D>::change(const Scene<D>& wanted)
 {

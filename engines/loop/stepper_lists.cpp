@@ -84,6 +84,7 @@ void Stepper<D>::begin_search()
 	state.searched_at.resize(D * state.n);
 	for (std::uint32_t i = 0; i < state.n; ++i)
 		for (int k = 0; k < D; ++k) state.searched_at[D * i + k] = state.rows[i].x[k];
+	state.images_went_since_search = 0;
 	++state.searches;
 }
 
@@ -92,9 +93,13 @@ void Stepper<D>::wrap_into_cell()
 {
 	for (std::uint32_t i = 0; i < state.n; ++i) {
 		Row<D>& row = state.rows[i];
-		const Vec<D> wrapped = state.scene.cell.wrap(row.x).at;
-		if (i >= state.n_free) state.members[i - state.n_free].shift += wrapped - row.x;
-		row.x = wrapped;
+		const geometry::Image<D> image = state.scene.cell.wrap(row.x);
+		if (i >= state.n_free) state.members[i - state.n_free].shift += image.at - row.x;
+		row.x = image.at;
+		if (!state.scene.cell.sheared() || !image.wrapped) continue;
+		const Vec<D> before = row.v;
+		row.v += state.scene.cell.velocity_change(image);
+		if (books) books->ledger.see_from_image(state.inverse_mass(i), before, row.v);
 	}
 }
 

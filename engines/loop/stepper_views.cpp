@@ -165,7 +165,9 @@ double Stepper<2>::overlap_at_forces(std::uint32_t candidate) const
 {
 	const Candidate& pair = state.pairs.candidates[candidate];
 	const double moved = moved_since_forces(candidate);
-	return placement<2>(row_before(moved, pair.first), row_before(moved, pair.second), state.scene.cell).overlap;
+	Cell<2> cell = state.scene.cell;
+	if (moved != 0) cell.advance(-moved);
+	return placement<2>(row_before(moved, pair.first), row_before(moved, pair.second), cell).overlap;
 }
 
 template <>

@@ -172,6 +172,9 @@ void FieldAverager::action()
 	if (scene->iter % every != 0) return;
 	if (!sums_fit()) clear();
 	source_.of(scene).look(view_, stress);
+	require(!view_.sheared,
+		"FieldAverager knows no images that are sheared: average with ShearDrive, or in a box; O.cell.hSize[0][1]",
+		scene->cell->hSize(0, 1));
 	const Frame now = frame();
 	leave_out_what_is_no_grain();
 	if (dimensions == 2) require_a_plane();

@@ -383,6 +383,9 @@ private:
 		flag("Interaction.isActive", contact, offsetof(yade::Interaction, isActive),
 			[&](bool value) { contact.attr("isActive") = value; });  // no archived attribute, so updateAttrs does not know it
 		integer<long>("Interaction", "iterMadeReal", contact, offsetof(yade::Interaction, iterMadeReal));
+		const int images[3] = { 3, -7, 0x112233 };
+		attribute("Interaction", "cellDist", contact, offsetof(yade::Interaction, cellDist),
+			eigen_.attr("Vector3i")(images[0], images[1], images[2]), images);
 		contact.attr("geom") = geom;
 		contact.attr("phys") = phys;
 		pointer("Interaction.geom", contact, offsetof(yade::Interaction, geom), geom);
@@ -427,8 +430,13 @@ private:
 		const Real edges[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
 		const py::object matrix = eigen_.attr("Matrix3")(edges[0], 0, 0, 0, edges[4], 0, 0, 0, edges[8]);
 		attribute("Cell", "hSize", periodic, offsetof(yade::Cell, hSize), matrix, edges);
-		for (const auto& [name, offset] : { std::pair("velGrad", offsetof(yade::Cell, velGrad)),
-				 std::pair("nextVelGrad", offsetof(yade::Cell, nextVelGrad)) }) {
+		holds("Cell.prevHSize", periodic, offsetof(yade::Cell, prevHSize), raw(edges));  // YADE sets it to hSize
+		integer<int>("Cell", "homoDeform", periodic, offsetof(yade::Cell, homoDeform));
+		flag("Cell", "velGradChanged", periodic, offsetof(yade::Cell, velGradChanged));
+		for (const auto& [name, offset] :
+			{ std::pair("trsf", offsetof(yade::Cell, trsf)), std::pair("refHSize", offsetof(yade::Cell, refHSize)),
+				std::pair("velGrad", offsetof(yade::Cell, velGrad)), std::pair("nextVelGrad", offsetof(yade::Cell, nextVelGrad)),
+				std::pair("prevVelGrad", offsetof(yade::Cell, prevVelGrad)) }) {
 			const Real rates[9] = { next(), 0, 0, 0, next(), 0, 0, 0, next() };
 			attribute(
 				"Cell", name, periodic, offset, eigen_.attr("Matrix3")(rates[0], 0, 0, 0, rates[4], 0, 0, 0, rates[8]), rates);

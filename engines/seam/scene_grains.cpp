@@ -22,7 +22,8 @@ void SceneGrains::look(SceneView& view, bool with_contacts)
 {
 	view.grains.clear();
 	view.contacts.clear();
-	view.periods = scene_->isPeriodic ? Vector3r(scene_->cell->hSize.colwise().norm()) : Vector3r(Vector3r::Zero());
+	view.periods = scene_->isPeriodic ? Vector3r(scene_->cell->hSize.diagonal()) : Vector3r(Vector3r::Zero());
+	view.sheared = scene_->isPeriodic && (scene_->cell->hSize(0, 1) != 0 || !scene_->cell->velGrad.isZero(0));
 	add_grains(view);
 	if (!with_contacts) return;
 	for (std::size_t id = 0; id < scene_->bodies->size(); ++id) {

@@ -346,17 +346,18 @@ class InteractionContainer;
 
 /// The periodic cell.
 class Cell : public Serializable {
-	char transformations_[712];
+	char caches_[568];
 
 public:
-	Eigen::Matrix<Real, 3, 3> hSize;  ///< columns are the edges
-
-private:
-	char previous_size_[72];
-
-public:
-	Eigen::Matrix<Real, 3, 3> velGrad;      ///< of the step
+	Eigen::Matrix<Real, 3, 3> trsf;         ///< product of all deformations
+	Eigen::Matrix<Real, 3, 3> refHSize;     ///< for pictures
+	Eigen::Matrix<Real, 3, 3> hSize;        ///< columns are the edges; deformed with velGrad at the start of each step
+	Eigen::Matrix<Real, 3, 3> prevHSize;    ///< before that
+	Eigen::Matrix<Real, 3, 3> velGrad;      ///< of the motion that led to the present positions [1/s]
 	Eigen::Matrix<Real, 3, 3> nextVelGrad;  ///< of the next one: what Python's O.cell.velGrad sets
+	Eigen::Matrix<Real, 3, 3> prevVelGrad;
+	int homoDeform;  ///< 1: where velGrad changes, bodies follow with velGrad x; 0: they do not; 2: with a convective term besides
+	bool velGradChanged;  ///< nextVelGrad is to be taken, even if it is zero
 };
 
 class Scene : public Serializable {

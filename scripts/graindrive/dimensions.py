@@ -47,7 +47,9 @@ def periods_of_scene(periods, dimensions):
     from yade import O
 
     if periods is None:
-        size = O.cell.size if O.periodic else (0, 0, 0)
+        size = (
+            [O.cell.hSize[k][k] for k in range(3)] if O.periodic else (0, 0, 0)
+        )  # O.cell.size: lengths of tilted edges
         return (size[0], size[1], size[2] if dimensions == 3 else 0)
     given = tuple(map(float, periods))
     if len(given) == 2 and dimensions == 2:

@@ -23,7 +23,14 @@ ADD_FORCES = (  # YADE's engines that act by the forces which they add, as engin
     "RadialForceEngine",
     "TorqueEngine",
 )
-DRIVES_AND_MEASURES = ("ContactForceBinner", "DrumDrive", "FieldAverager", "OscillationDrive", "SpinTranslateDrive")
+DRIVES_AND_MEASURES = (
+    "ContactForceBinner",
+    "DrumDrive",
+    "FieldAverager",
+    "OscillationDrive",
+    "ShearDrive",
+    "SpinTranslateDrive",
+)
 
 
 @dataclass(frozen=True)

@@ -40,10 +40,11 @@ struct DiskStep : StepMotion<2> {
 	const std::uint32_t* fold_sources;
 	const std::uint32_t* block_pair_end;  ///< by block of free grains: all pairs owned up to the block end before this
 	const std::uint32_t* block_fold_end;
-	double* travelled;                      ///< by block: bound on any grain's way since pairs were selected [m]
-	const double* allowed;                  ///< by block: how long that may grow before they must be selected anew [m]
-	double length[2], inverse_length[2];    ///< periods [m] and [1/m], 0 where not periodic
-	const void* law;                        ///< the law of `KernelChoice`, in numbers of the precision
+	double* travelled;                    ///< by block: bound on any grain's way since pairs were selected [m]
+	const double* allowed;                ///< by block: how long that may grow before they must be selected anew [m]
+	double length[2], inverse_length[2];  ///< periods [m] and [1/m], 0 where not periodic
+	double image[4];  ///< displacement [m] along x and velocity [m/s] of the image one period further in y; 0 without shear
+	const void* law;  ///< the law of `KernelChoice`, in numbers of the precision
 	const OutsideForce* outside = nullptr;  ///< by row, or none; read in damped scenes only
 };
 

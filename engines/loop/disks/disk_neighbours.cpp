@@ -47,8 +47,17 @@ void DiskNeighbours::set_up()
 	law_in_float = laws::converted<float>(scene.law);
 	const auto address = [](const auto& law) -> const void* { return &law; };
 	data.law = scene.precision == Precision::single ? std::visit(address, law_in_float) : std::visit(address, scene.law);
+	see_cell();
+}
+
+void DiskNeighbours::see_cell()
+{
+	const Cell<2>& cell = state.scene.cell;
 	for (int k = 0; k < 2; ++k)
-		if (scene.cell.periodic[k]) data.inverse_length[k] = 1 / (data.length[k] = scene.cell.length(k));
+		if (cell.periodic[k]) data.inverse_length[k] = 1 / (data.length[k] = cell.length(k));
+	if (!cell.sheared()) return;
+	data.image[0] = cell.offset, data.image[1] = 0;  // that along y is the period
+	data.image[2] = cell.rate, data.image[3] = cell.growth;
 }
 
 void DiskNeighbours::make_dummies()
@@ -91,7 +100,7 @@ void DiskNeighbours::select(int rank, double smallest_budget, double)
 		reach[i] = { state.rows[i].radius + budget,
 			state.rows[i].radius + std::max(budget / 2, std::min(budget, smallest_budget)) };
 	}
-	selected = pairs.select(state.rows.data(), state.scene.cell, reach);
+	selected = pairs.select(state.rows.data(), state.scene.cell, reach, state.images_may_go);
 }
 
 void DiskNeighbours::finish_selection() { lay_out(); }

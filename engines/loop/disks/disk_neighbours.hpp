@@ -13,6 +13,8 @@ public:
 	/// Kernels, numbers and memory for the settings of the scene.
 	void set_up();
 	StepMotion<2>& motion() { return data; }
+	/// Periods and images as the cell has them now.
+	void see_cell();
 	Processor processor() const { return kernel.processor; }
 	int width() const { return kernel.width; }
 	/// Rows behind the grains that fill up packs, made anew.

@@ -18,7 +18,7 @@ std::uint32_t padded(std::uint32_t places) { return (places + pack_alignment - 1
 
 }  // namespace
 
-PairCounts PairList::select(const DiskRow* rows, const Cell<2>& cell, const std::vector<Reach>& reach)
+PairCounts PairList::select(const DiskRow* rows, const Cell<2>& cell, const std::vector<Reach>& reach, double images_may_go)
 {
 	PairCounts counts;
 	for (Candidate& pair : candidates) {
@@ -26,7 +26,8 @@ PairCounts PairList::select(const DiskRow* rows, const Cell<2>& cell, const std:
 		Vec<2> d = b.x - a.x;
 		if (pair.wrapped) d = cell.nearest(d).at;
 		const Reach &one = reach[pair.first], &other = reach[pair.second];
-		const double square = geometry::squared_norm(d), whole = one.whole + other.whole, half = one.half + other.half;
+		const double square = geometry::squared_norm(d), images = pair.wrapped ? images_may_go : 0;
+		const double whole = one.whole + other.whole + images, half = one.half + other.half + images / 2;
 		pair.near = square < whole * whole;
 		counts.selected += pair.near;
 		counts.by_half_budgets += square < half * half;

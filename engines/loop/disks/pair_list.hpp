@@ -23,8 +23,8 @@ public:
 	/// For pairs that someone else keeps, with their springs.
 	explicit PairList(std::vector<Candidate>& pairs) : candidates(pairs) {}
 
-	/// Selects the candidates nearer than the sum of their reaches.
-	PairCounts select(const DiskRow* rows, const Cell<2>& cell, const std::vector<Reach>& reach);
+	/// Selects the candidates nearer than the sum of their reaches; those across a side also by the way that its images may go [m].
+	PairCounts select(const DiskRow* rows, const Cell<2>& cell, const std::vector<Reach>& reach, double images_may_go);
 	/// Lays the selected ones out for `threads` and points the grains' slots at them.
 	void lay_out(const DiskRow* rows, std::uint32_t n_free, std::uint32_t n_grains, int threads, Precision precision,
 		std::uint32_t dummy_row);

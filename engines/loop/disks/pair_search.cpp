@@ -37,6 +37,7 @@ struct Search {
 			int to_s = s + step[0], to_f = f + step[1];
 			const bool over_s = to_s >= grid.slow.cells, over_f = to_f < 0 || to_f >= grid.fast.cells;
 			if ((over_s && !grid.slow.periodic) || (over_f && !grid.fast.periodic)) continue;
+			if (in.scene.cell.sheared() && (grid.fast_is_x ? over_s : over_f)) continue;  // across_the_shear
 			const bool same_strip = !over_f && to_f / grid.strip_height == f / grid.strip_height;
 			if (same_strip && !over_s) continue;
 			to_s %= grid.slow.cells;
@@ -84,6 +85,25 @@ struct Search {
 			}
 	}
 
+	/// The grains of the last layer of cells in y with those of the first, whose images stand `offset` further along x.
+	void across_the_shear() const
+	{
+		const GridAxis &x = grid.fast_is_x ? grid.fast : grid.slow, &y = grid.fast_is_x ? grid.slow : grid.fast;
+		const auto index = [&](int in_x, int in_y) { return grid.fast_is_x ? grid.index(in_y, in_x) : grid.index(in_x, in_y); };
+		for (int column = 0; column < x.cells; ++column) {
+			const int top = index(column, y.cells - 1);
+			for (std::uint32_t a = grid.start[top]; a < grid.start[top + 1]; ++a) {
+				const DiskRow& row = in.rows[a];
+				const double reach = row.radius + in.largest_free_radius + in.skin;
+				const auto below = range(x, row.x[0] - in.scene.cell.offset, reach);
+				for (int to = below.first; to <= below.second; ++to) {
+					const int bottom = index((to % x.cells + x.cells) % x.cells, 0);
+					for (std::uint32_t b = grid.start[bottom]; b < grid.start[bottom + 1]; ++b) if_near_wrapped(a, b);
+				}
+			}
+		}
+	}
+
 	void between_members() const
 	{
 		for (std::uint32_t a = in.n_free; a < in.n; ++a)
@@ -126,6 +146,7 @@ void find_candidates(const State<2>& in, const CellGrid& grid, std::vector<Candi
 	others.clear();
 	if (in.n_free > 0) {
 		Search{ in, grid, candidates }.free_pairs();
+		if (in.scene.cell.sheared()) Search{ in, grid, others }.across_the_shear();
 		for (std::uint32_t member = in.n_free; member < in.n; ++member) Search{ in, grid, others }.around_member(member);
 	}
 	if (Search{ in, grid, others }.several_bodies_may_meet()) Search{ in, grid, others }.between_members();

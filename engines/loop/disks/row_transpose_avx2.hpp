@@ -11,12 +11,13 @@ constexpr Processor compiled_for = Processor::avx2;
 /// Positions and velocities of the second row minus the first, and sums of radius and surface speed.
 struct RowDifference {
 	const DiskRow* rows;
-	__m256d length, inverse_length;
+	__m256d length, inverse_length, image;
 
 	explicit RowDifference(const DiskStep& data)
 		: rows(data.rows),
 		  length(_mm256_setr_pd(data.length[0], data.length[1], 0, 0)),
-		  inverse_length(_mm256_setr_pd(data.inverse_length[0], data.inverse_length[1], 0, 0))
+		  inverse_length(_mm256_setr_pd(data.inverse_length[0], data.inverse_length[1], 0, 0)),
+		  image(_mm256_loadu_pd(data.image))
 	{
 	}
 
@@ -24,10 +25,10 @@ struct RowDifference {
 	template <bool Wrapped>
 	__m256d operator()(PairLink link) const
 	{
-		const __m256d d = _mm256_sub_pd(_mm256_load_pd(row_at(rows, link.second)), _mm256_load_pd(row_at(rows, link.first)));
+		__m256d d = _mm256_sub_pd(_mm256_load_pd(row_at(rows, link.second)), _mm256_load_pd(row_at(rows, link.first)));
 		if constexpr (!Wrapped) return d;
-		constexpr int to_nearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
-		return _mm256_fnmadd_pd(length, _mm256_round_pd(_mm256_mul_pd(d, inverse_length), to_nearest), d);
+		d = _mm256_fnmadd_pd(_mm256_permute4x64_pd(periods_of(d), 0x55), image, d);  // those in y displace along x
+		return _mm256_fnmadd_pd(length, periods_of(d), d);
 	}
 
 	/// Radius and surface speed of one pair, then of another.
@@ -37,6 +38,11 @@ struct RowDifference {
 	}
 
 private:
+	__m256d periods_of(__m256d d) const
+	{
+		constexpr int to_nearest = _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC;
+		return _mm256_round_pd(_mm256_mul_pd(d, inverse_length), to_nearest);
+	}
 	__m256d second_halves(std::uint32_t one, std::uint32_t other) const
 	{
 		return _mm256_insertf128_pd(

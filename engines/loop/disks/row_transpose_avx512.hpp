@@ -10,23 +10,27 @@ constexpr Processor compiled_for = Processor::avx512;
 /// Positions and velocities of the second row minus the first; the other columns are sums. One row, one register.
 struct RowDifference {
 	const DiskRow* rows;
-	__m512d signs = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1), length, inverse_length;
+	__m512d signs = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1), length, inverse_length, image;
 
 	explicit RowDifference(const DiskStep& data)
 		: rows(data.rows),
 		  length(_mm512_setr_pd(data.length[0], data.length[1], 0, 0, 0, 0, 0, 0)),
-		  inverse_length(_mm512_setr_pd(data.inverse_length[0], data.inverse_length[1], 0, 0, 0, 0, 0, 0))
+		  inverse_length(_mm512_setr_pd(data.inverse_length[0], data.inverse_length[1], 0, 0, 0, 0, 0, 0)),
+		  image(_mm512_setr_pd(data.image[0], data.image[1], data.image[2], data.image[3], 0, 0, 0, 0))
 	{
 	}
 
 	template <bool Wrapped>
 	__m512d operator()(PairLink link) const
 	{
-		const __m512d d =
-			_mm512_fmadd_pd(_mm512_load_pd(row_at(rows, link.first)), signs, _mm512_load_pd(row_at(rows, link.second)));
+		__m512d d = _mm512_fmadd_pd(_mm512_load_pd(row_at(rows, link.first)), signs, _mm512_load_pd(row_at(rows, link.second)));
 		if constexpr (!Wrapped) return d;
-		return _mm512_fnmadd_pd(length, _mm512_roundscale_pd(_mm512_mul_pd(d, inverse_length), 0), d);
+		d = _mm512_fnmadd_pd(_mm512_permutex_pd(periods_of(d), 0x55), image, d);  // those in y displace along x
+		return _mm512_fnmadd_pd(length, periods_of(d), d);
 	}
+
+private:
+	__m512d periods_of(__m512d d) const { return _mm512_roundscale_pd(_mm512_mul_pd(d, inverse_length), 0); }
 };
 
 template <class P>

@@ -10,12 +10,13 @@ constexpr int vector_bytes = 16;
 
 struct RowDifference {
 	const DiskRow* rows;
-	double length[2], inverse_length[2];
+	double length[2], inverse_length[2], image[4];
 
 	explicit RowDifference(const DiskStep& data)
 		: rows(data.rows),
 		  length{ data.length[0], data.length[1] },
-		  inverse_length{ data.inverse_length[0], data.inverse_length[1] }
+		  inverse_length{ data.inverse_length[0], data.inverse_length[1] },
+		  image{ data.image[0], data.image[1], data.image[2], data.image[3] }
 	{
 	}
 
@@ -24,10 +25,14 @@ struct RowDifference {
 	{
 		const double first = row_at(rows, link.first)[column], second = row_at(rows, link.second)[column];
 		if (column >= 4) return second + first;
-		const double d = second - first;
-		if (!Wrapped || column >= 2) return d;
-		return d - length[column] * std::nearbyint(d * inverse_length[column]);
+		double d = second - first;
+		if (!Wrapped) return d;
+		d -= periods(row_at(rows, link.second)[1] - row_at(rows, link.first)[1], 1) * image[column];
+		return column >= 2 ? d : d - length[column] * periods(d, column);
 	}
+
+private:
+	double periods(double d, int axis) const { return std::nearbyint(d * inverse_length[axis]); }
 };
 
 template <class P>

@@ -1,0 +1,211 @@
+"""Shear: disks between sides that slide past each other show what stress a granular flow needs: mu(I) and phi(I).
+
+Homogeneous shear in two dimensions without gravity and without walls: v_x = shear_rate y in a cell whose images slide past
+each other (Lees, Edwards 1972). This is how Oba, Otsuki 2025 (appendix B) found the constants of
+mu(I) = mu_s + (mu_2 - mu_s)/(I_0/I + 1), I = shear_rate d sqrt(rho/p), for their drum. Disks and law are the drum's:
+diameters uniform in d to 1.2 d, linear spring and dashpot with k_n = 2e5 m g/d, k_t = 2/7 k_n, friction 0.5, restitution
+0.92, where m is the mass of a disk of diameter d. Units are d, rho, g, though nothing falls: numbers compare with the drum's.
+
+Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 and g_p = sqrt(m k_n) (after
+da Cruz et al., PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with
+shear_rate as a key of its own: there p follows, and with it I.
+
+The pressure is a choice: grains count as stiff where k_n/P is large. 100 rho g d makes it 1,570; runs at a quarter and four
+times the pressure, at equal I, show what that changes (studies/RESULTS.md).
+
+Measured are tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses, contacts of a
+grain, each with the error of a correlated series, and how far the velocity profile is from a straight line.
+
+Cost on one core: steps go as strain/I, some 20 to 40 us each with 600 disks (at large I half of it is search, since the sides
+are fast); the demo at I = 0.1 takes seconds, I = 1e-3 some minutes.
+
+    scripts/run shear                                          the demo, I = 0.1
+    scripts/run shear inertial_number=0.001 out=slow
+    yade -n -x studies/shear.py area_fraction=0.825 shear_rate=0.5
+    scripts/campaign studies/campaigns/shear.yaml              mu(I), phi(I) and the fit
+"""
+
+import os
+import sys
+from typing import ClassVar, Optional
+
+if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's own
+    sys.path.insert(0, os.path.dirname(os.path.abspath(sys.argv[0])))
+
+import house  # noqa: E402, F401
+
+import numpy as np  # noqa: E402
+
+from graindrive import headless, progress, recording, shear_cell  # noqa: E402
+from graindrive.errors import UsageError  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.postproc import quantities  # noqa: E402
+from graindrive.postproc.shear import figure  # noqa: E402
+from graindrive.postproc.shear.campaign import REPORT  # noqa: E402
+from graindrive.postproc.shear.flow import UNITS, steady_flow  # noqa: E402
+from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
+from graindrive.yade_march import YadeMarch  # noqa: E402
+
+# Parameters -----------------------------------------------------------------------------------------------------------
+
+TIME_STEP = 1e-4  # sqrt(d/g), the drum paper's: 50 steps a contact
+STRAIN_OF_ROW = 0.02  # between two rows of the series
+MEASURE_EVERY = 5  # steps; the height answers as often
+FEWEST_GRAINS = 60  # with fewer the cell is too short for the search
+RATE = 5e7  # particle-steps per second of one core, the drive's measures among them
+
+
+class ShearParameters(StudyParameters):
+    """What the shear study knows; lengths in d, densities in rho, times in sqrt(d/g)."""
+
+    unit_system: ClassVar[str] = quantities.GRAIN
+
+    inertial_number: float = quantity(0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10)
+    shear_rate: Optional[float] = quantity(
+        None, "sqrt(g/d)", "dv_x/dy; auto: that of inertial_number at the pressure", gt=0
+    )
+    pressure: float = quantity(100.0, "rho g d", "P to which the height answers", gt=0)
+    area_fraction: float = quantity(
+        0.0, "-", "hold this area fraction in place of the pressure; 0: hold the pressure", ge=0, le=0.9
+    )
+    settle_strain: float = quantity(2.0, "-", "strain that the averages leave out at least", ge=0)
+    strain: float = quantity(8.0, "-", "strain of the whole run", gt=0, lever=Lever(20, "lower"))
+    grains: int = quantity(600, "-", "number of disks", ge=FEWEST_GRAINS, le=1_000_000, lever=Lever(4000, "lower"))
+    friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
+    restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
+    stiffness: float = quantity(2e5, "m g/d", "k_n of the spring; k_t is 2/7 of it", gt=0)
+    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+
+    @property
+    def rate(self):
+        """The shear rate [sqrt(g/d)]."""
+        return self.inertial_number * np.sqrt(self.pressure) if self.shear_rate is None else self.shear_rate
+
+    def auto_values(self):
+        """Return what is taken for shear_rate=auto."""
+        return {"shear_rate": float(self.rate)}
+
+
+PRESETS = {
+    "smoke": dict(grains=100, settle_strain=0.5, strain=1.5, dt_factor=2),
+    "demo": dict(dt_factor=2),
+    "paper": dict(grains=4000, strain=20),
+}
+
+
+def time_step(p):
+    """Return the time step [sqrt(d/g)]."""
+    return TIME_STEP * p.dt_factor
+
+
+def block_of(p):
+    """Return the steps between two rows, a multiple of those between two measures."""
+    return MEASURE_EVERY * max(1, round(STRAIN_OF_ROW / (p.rate * time_step(p) * MEASURE_EVERY)))
+
+
+def steps_of(p):
+    """Return the steps of a run, whole blocks."""
+    return block_of(p) * max(1, round(p.strain / (p.rate * time_step(p) * block_of(p))))
+
+
+# Scene ----------------------------------------------------------------------------------------------------------------
+
+
+def cell(p):
+    """Return the recipe of the sheared cell."""
+    return shear_cell.ShearCell(
+        grains=p.grains,
+        stiffness=p.stiffness,
+        friction=p.friction,
+        restitution=p.restitution,
+        shear_rate=float(p.rate),
+        pressure=0.0 if p.area_fraction else p.pressure,
+        area_fraction=p.area_fraction,
+        every=MEASURE_EVERY,
+        seed=p.seed,
+    )
+
+
+def check(p):
+    """Refuse values that no run can be made of; return the time step over the critical one."""
+    if p.settle_strain >= p.strain - 2 * STRAIN_OF_ROW:
+        raise UsageError(
+            f"settle_strain={p.settle_strain:g} leaves nothing of strain={p.strain:g} to average; raise strain or lower it"
+        )
+    if p.shear_rate is not None and not p.area_fraction:
+        raise UsageError(
+            f"shear_rate={p.shear_rate:g} is a key of runs at constant area_fraction; at constant pressure give inertial_number"
+        )
+    progress.require_feasible(p.strain / (p.rate * time_step(p)))
+    return cell(p).check(time_step(p), p.largest_overlap)
+
+
+# Run ------------------------------------------------------------------------------------------------------------------
+
+
+def run(p, folder):
+    """Make the cell, shear it, record stresses; or go on where an interrupted run left off."""
+    ratio, march = check(p), YadeMarch()
+    if folder.resumed:
+        recording.load_stage(folder, march)
+    else:
+        cell(p).build(time_step(p), p.loop, precision=p.precision, largest_overlap=p.largest_overlap)
+    march.grains = p.grains
+    also = f" k_n/P = {p.stiffness * shear_cell.MASS / p.pressure:.3g}," if not p.area_fraction else ""
+    recording.announce(folder, grains=p.grains, dt=time_step(p), ratio=ratio, unit="sqrt(d/g)", also=also)
+    record(p, folder, march)
+
+
+def record(p, folder, march):
+    """Run in blocks of a fiftieth of strain; keep block means of the stresses, checkpoints, then means over the steady flow."""
+    folder.declare_series(**UNITS)
+    track, block = recording.Track(folder), block_of(p)
+
+    def sample(done):
+        if done == 0:
+            return
+        row = dict(t=march.time, strain=done * time_step(p) * p.rate, **shear_cell.means())
+        shear_cell.keep_upright()
+        folder.append(**{name: row[name] for name in UNITS})
+        track.append(row)
+
+    with recording.overlap_advice(
+        "lower inertial_number, pressure or dt_factor, or raise stiffness or largest_overlap"
+    ):
+        recording.run_sampled(folder, march, steps_of(p), block, sample, track=track, label=f"shearing by {p.strain:g}")
+    found = steady_flow(track.arrays(), p.settle_strain, float(p.rate))
+    folder.write("flow", found.profile)
+    folder.summarize(**found.summary)
+
+
+# Study ----------------------------------------------------------------------------------------------------------------
+
+
+def particle_steps(p):
+    """Return grains times steps of a run."""
+    return p.grains * steps_of(p)
+
+
+STUDY = Study(
+    name="shear",
+    parameters=ShearParameters,
+    presets=PRESETS,
+    observables=observables(
+        quantities.GRAIN,
+        "stress_ratio",
+        "stress_ratio shear_stress mean_pressure phi flow_inertial_number normal_stress_difference coordination"
+        " kinetic_pressure_share kinetic_shear_share profile_deviation",
+    ),
+    cost=Cost(particle_steps, RATE),
+    check=check,
+    run=run,
+    figure=figure.draw,
+    report=REPORT,
+    constants={
+        "d_largest": Constant(shear_cell.LARGEST, "d", "largest diameter; the smallest is d"),
+        "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
+    },
+)
+
+if __name__ == "__main__":
+    headless.main(STUDY)
