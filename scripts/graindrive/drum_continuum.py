@@ -21,6 +21,7 @@ from .engines import TwoPhaseFlow
 from .errors import UsageError
 from .postproc.drum import blocks
 from .postproc.drum.flow import BED_FRACTION, SURFACE_LEVEL
+from .postproc.measured import Measured
 from .postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady
 
 GRAIN_MASS = np.pi / 4  # m [rho d^2]: the paper's viscosities and pressures are in m, g, d
@@ -215,6 +216,16 @@ def grid_of(p):
     return x, x
 
 
+def torque_of(x, fraction):
+    """Return the bed's torque on the drum as `Measured` [rho g d^3], from the solid fractions (blocks, ny, nx) of a steady flow.
+
+    Its weight turns the bed about the axis; in a steady flow the drum holds it.
+    """
+    of_blocks = -(fraction * x).sum(axis=(1, 2)) * (x[1] - x[0]) ** 2
+    error = of_blocks.std(ddof=1) / np.sqrt(len(of_blocks)) if len(of_blocks) > 1 else float("nan")
+    return Measured(float(of_blocks.mean()), float(error))
+
+
 def keep(p, folder, march, track, means, area, stage):
     """Store the rows as `continuum`, the means as `fields/continuum`; return the `Blocks` of the steady flow."""
     x, y = grid_of(p)
@@ -235,6 +246,8 @@ def keep(p, folder, march, track, means, area, stage):
     )
     folder.write("fields/continuum", fields, spacing=p.drum_diameter / p.cells, part_of_the_bed=BED_FRACTION)
     bed = np.clip(flow.fraction, 0, 1) * inside
+    torque, beside = torque_of(x, fraction), "" if p.model == "continuum" else "continuum_"
+    folder.summarize(**{f"{beside}torque": (torque.value, "rho g d^3"), f"{beside}torque_err": torque.error})
     folder.summarize(
         continuum_steps=flow.steps,
         ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
