@@ -14,9 +14,9 @@ the combined error. The packings' mean has the larger of the runs' own error and
 
 import argparse
 import json
+import resource
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -69,19 +69,24 @@ def ours(steps, every, block):
 
 
 def both(lift, p, folder):
-    """Return (our means, theirs, seconds of ours, of theirs): drag and lift [N] as `Mean`s, dicts, in the same window."""
+    """Return (our means, theirs, processor time [s] of ours, of theirs): drag and lift [N] as `Mean`s, in the same window."""
     body = lift.body_of(p)
     stage = lift.build(p, body, lift.time_step(p), without_springs)
     per_d = lift.D / (p.speed * lift.time_step(p))
     block = max(1, round(lift.BLOCK_TRAVEL * per_d / EVERY)) * EVERY
     steps = int(p.way * per_d) // block * block
-    start = time.monotonic()
+    start = processor_time()
     other = theirs(lift, p, stage, lift.material(p), steps, EVERY, folder)
-    between = time.monotonic()
     own = ours(steps, EVERY, block)
-    seconds = time.monotonic() - between, between - start
+    seconds = processor_time() - start
     other = other.reshape(len(own), -1, len(peer.COLUMNS)).mean(axis=1)
     return *means((own, other), block / per_d, forces.PAPERS_TRANSIENT * body.height / lift.D), *seconds
+
+
+def processor_time():
+    """Return the processor time [s] of this process and of programs that it has run, (2,)."""
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return np.array([one.ru_utime + one.ru_stime for one in used])
 
 
 def means(found, block, transient):
@@ -152,8 +157,8 @@ def report(name, keys, rows):
     lines = [
         f"## Lift: the same beds in LIGGGHTS (`{name}`)",
         "",
-        f"Repeat: `{command}`; {seconds[0]:.0f} s of GrainLoop and {seconds[1]:.0f} s of LIGGGHTS by the clock, one core"
-        f" each. Means are the same if they lie within {SIGMAS} combined errors.",
+        f"Repeat: `{command}`; {seconds[0]:.0f} s of processor time of GrainLoop and {seconds[1]:.0f} s of"
+        f" LIGGGHTS. Means are the same if they lie within {SIGMAS} combined errors.",
         "",
         "| seed | force | GrainLoop [N] | LIGGGHTS [N] | apart, combined errors | verdict |",
         "|---|---|---|---|---|---|",
