@@ -16,8 +16,8 @@ times the pressure, at equal I, show what that changes (studies/RESULTS.md).
 Measured are tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses, contacts of a
 grain, each with the error of a correlated series, and how far the velocity profile is from a straight line.
 
-Cost on one core: steps go as strain/I, some 20 to 40 us each with 600 disks (at large I half of it is search, since the sides
-are fast); the demo at I = 0.1 takes seconds, I = 1e-3 some minutes.
+Cost on one core: steps go as strain/I, some 50 us each with 400 disks at small I, and 100 us and more at I > 0.1, where the sides
+are fast and lists are made anew every few steps; the demo at I = 0.1 takes seconds, I = 1e-3 some minutes.
 
     scripts/run shear                                          the demo, I = 0.1
     scripts/run shear inertial_number=0.001 out=slow
@@ -52,7 +52,8 @@ TIME_STEP = 1e-4  # sqrt(d/g), the drum paper's: 50 steps a contact
 STRAIN_OF_ROW = 0.02  # between two rows of the series
 MEASURE_EVERY = 5  # steps; the height answers as often
 FEWEST_GRAINS = 60  # with fewer the cell is too short for the search
-RATE = 5e7  # particle-steps per second of one core, the drive's measures among them
+# Particle-steps per second of one busy core with 400 disks by I: where the sides are fast lists are made anew every few steps.
+RATES = ((0.001, 0.01, 0.1, 0.5), (9e6, 7e6, 3.5e6, 1.4e6))
 
 
 class ShearParameters(StudyParameters):
@@ -186,6 +187,11 @@ def particle_steps(p):
     return p.grains * steps_of(p)
 
 
+def rate(p):
+    """Return the particle-steps per second of one core: `RATES`, interpolated in log I, and the same beyond."""
+    return float(np.interp(np.log(p.inertial_number), np.log(RATES[0]), RATES[1]))
+
+
 STUDY = Study(
     name="shear",
     parameters=ShearParameters,
@@ -196,7 +202,7 @@ STUDY = Study(
         "stress_ratio shear_stress mean_pressure phi flow_inertial_number normal_stress_difference coordination"
         " kinetic_pressure_share kinetic_shear_share profile_deviation",
     ),
-    cost=Cost(particle_steps, RATE),
+    cost=Cost(particle_steps, rate),
     check=check,
     run=run,
     figure=figure.draw,

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "engines/base/temporary_file.hpp"
 #include "engines/loop/checkpoint.hpp"
 #include "engines/loop/test_scenes.hpp"
 
@@ -198,7 +199,8 @@ TEST(Shear, forces_and_springs_of_a_pair_do_not_know_where_the_side_is)
 
 TEST(Shear, a_restart_in_mid_shear_goes_on_with_the_same_bits_on_any_number_of_threads)
 {
-	const std::string path = ::testing::TempDir() + "shear.checkpoint";
+	const test::TemporaryFile file;
+	const std::string& path = file.path();
 	Stepper<2> whole(sheared_crowd(16, 7, 3, 2.5));
 	whole.track_energy(true);
 	whole.step(777);

@@ -63,7 +63,11 @@ def test_a_damaged_offset_is_refused(member, shift):
     assert "Use Debian 12's YADE" in message and "-DYADE_INCLUDE_DIR" in message
 
 
-@pytest.mark.parametrize("member", [m for m in MEMBERS if m not in STRUCTURES | SIZES])
+# YADE writes the same matrix into both, so that a search finds the other one first; a damaged offset is refused all the same.
+TWINS = {"Cell.prevHSize"}  # of Cell.hSize
+
+
+@pytest.mark.parametrize("member", [m for m in MEMBERS if m not in STRUCTURES | SIZES | TWINS])
 def test_the_refusal_says_expected_and_found(member):
     true_offset = found_offset(member, 8)
     # Found again at the same place however far off the expectation is.

@@ -50,7 +50,19 @@ def friction_claims(_campaign, rows):
         claim(rows, "μ_s of μ(I)", source, "0.246", law.mu_s, Agrees(PRINTED["mu_s"], ROUNDING, 0.02)),
         claim(rows, "μ_2 of μ(I)", source, "0.401", law.mu_2, Agrees(PRINTED["mu_2"], ROUNDING, 0.04)),
         claim(rows, "I_0 of μ(I)", source, "0.133", law.i_0, Agrees(PRINTED["i_0"], ROUNDING, 0.05)),
+        held_pressure(rows),
     ]
+
+
+def held_pressure(rows):
+    """Runs that are too short, most of all at large I, have not come to their pressure: p/P that is furthest from 1."""
+    inertial, pressure = curve(rows, "inertial_number", "mean_pressure")
+    ratios = [p / float(rows["pressure"].iloc[0]) for p in pressure]
+    worst = max(range(len(ratios)), key=lambda k: abs(ratios[k].value - 1))
+    text = f"runs have come to their pressure; the p/P furthest from 1, at I = {inertial[worst]:g}"
+    return claim(
+        at(rows, inertial_number=inertial[worst]), text, "this study", "1", ratios[worst], Agrees(1, 0.02, 0.05)
+    )
 
 
 def draw_friction(campaign, rows, claims):

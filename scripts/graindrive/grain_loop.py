@@ -121,6 +121,10 @@ def use_yade_loop():
     before = exchanged[tag].loop
     hand_settings_back(loop, before)
     del exchanged[tag]
+    if O.periodic:
+        before.newton.prevVelGrad = (
+            O.cell.velGrad
+        )  # bodies have followed it: no change that NewtonIntegrator must make up for
     O.engines = before.put_back(O.engines)
     make_contacts_anew(before, loop)
 

@@ -1,0 +1,97 @@
+"""The shear study, shrunk: what it holds and measures, both loops, its way of going on, and values that it refuses."""
+
+import importlib
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from graindrive import yade_march
+from graindrive.errors import Interrupted, UsageError
+from graindrive.run_folder import RunFolder
+
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
+TINY = dict(grains=80, strain=1.0, settle_strain=0.2, inertial_number=0.2, dt_factor=3)
+
+
+@pytest.fixture
+def shear(monkeypatch):
+    """The study as a module, in this process."""
+    monkeypatch.syspath_prepend(str(STUDIES))
+    return importlib.import_module("shear")
+
+
+def carry_out(shear, out, **changes):
+    """Run the shrunken study into the folder `out`; return (its series, its summary)."""
+    p = shear.ShearParameters(**{**TINY, "out": str(out), **changes})
+    with RunFolder(p, study="shear") as folder:
+        shear.run(p, folder)
+    with h5py.File(Path(out) / "run.h5") as file:
+        series = {name: data[:] for name, data in file["series"].items()}
+    return series, json.loads((Path(out) / "summary.json").read_text())
+
+
+def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path):
+    series, found = carry_out(shear, tmp_path / "run", strain=4.0, settle_strain=2.0)
+    assert found["mean_pressure"] == pytest.approx(100, rel=0.1)  # of 80 disks that flow, over two strains
+    assert 0.1 < found["stress_ratio"] < 1 and 0.6 < found["phi"] < 0.85
+    trace = sum(series[f"{part}_s{axis}"] for part in ("contact", "kinetic") for axis in ("xx", "yy"))
+    np.testing.assert_allclose(series["mean_pressure"], trace / 2, rtol=1e-12)
+    np.testing.assert_allclose(series["shear_stress"], -series["contact_sxy"] - series["kinetic_sxy"], rtol=1e-12)
+    assert series["strain"][-1] == pytest.approx(4.0, rel=0.02)
+
+
+def test_an_area_fraction_is_reached_and_kept(shear, tmp_path):
+    series, found = carry_out(
+        shear, tmp_path / "run", area_fraction=0.75, shear_rate=1.0, strain=4.0, settle_strain=3.0
+    )
+    assert found["phi"] == pytest.approx(0.75, rel=1e-9) and series["growth"][-1] == pytest.approx(0, abs=1e-9)
+    assert found["flow_inertial_number"] == pytest.approx(1.0 / np.sqrt(found["mean_pressure"]))
+
+
+def test_both_loops_begin_alike(shear, tmp_path):
+    """Until chaos, and but for the affine part of a change of height (README): 0.1 of strain."""
+    runs = [
+        carry_out(shear, tmp_path / loop, loop=loop, area_fraction=0.7, shear_rate=2.0, strain=0.1, settle_strain=0.0)[
+            0
+        ]
+        for loop in ("grain", "yade")
+    ]
+    for name in ("mean_pressure", "shear_stress", "phi", "height"):
+        np.testing.assert_allclose(runs[0][name], runs[1][name], rtol=0.02, atol=1e-3, err_msg=name)
+
+
+def test_a_resumed_run_gives_the_bits_of_one_in_one_go(shear, tmp_path, monkeypatch):
+    whole, _ = carry_out(shear, tmp_path / "whole")
+    steps, advance = [0], yade_march.advance
+
+    def interrupted(count):
+        steps[0] += 1
+        if steps[0] == 20:
+            raise Interrupted(15)
+        advance(count)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(yade_march, "advance", interrupted)
+        with pytest.raises(Interrupted):
+            carry_out(shear, tmp_path / "parts", checkpoint_seconds=0)
+    resumed, _ = carry_out(shear, tmp_path / "parts", checkpoint_seconds=0, resume=True)
+    for name, values in whole.items():
+        assert np.array_equal(values, resumed[name]), name
+
+
+@pytest.mark.parametrize(
+    "changes, words",
+    [
+        (dict(settle_strain=2.0), "settle_strain=2 leaves nothing"),
+        (dict(shear_rate=1.0), "at constant pressure give inertial_number"),
+        (dict(dt_factor=60), "time step .* is over the critical"),
+        (dict(pressure=1e5), "presses grains too far"),
+        (dict(inertial_number=1e-9), "steps"),
+    ],
+)
+def test_values_that_do_not_go_together_are_refused(shear, changes, words):
+    with pytest.raises(UsageError, match=words):
+        shear.check(shear.ShearParameters(**{**TINY, **changes}))
