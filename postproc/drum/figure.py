@@ -118,7 +118,7 @@ def draw_ill_posed(axes, run):
     told = run.summary.get("ill_posed_share")
     if told is not None:
         text = f"grey: equations ill-posed, {100 * told:.0f} % of the grains' area"
-        axes.text(0.5, 0.97, text, transform=axes.transAxes, fontsize=6, ha="center", va="top")
+        axes.set_title(text, loc="right", fontsize=6)
 
 
 def ill_posed_map(run):
