@@ -12,7 +12,7 @@ from ..campaign.verdicts import below
 from ..figures import GREY
 from ..measured import Measured
 from .claims import claim
-from .runs import mean_profile, of_model, scaled_difference
+from .runs import by_speed, mean_profile, of_model, scaled_difference
 
 FINEST = dict(
     continuum_dt=min, cells=max, largest_viscosity=max, tolerance=min
@@ -48,8 +48,9 @@ def rows_of(rows, lever):
 
 
 def settings(campaign, rows):
-    """Yield the `Setting`s of each lever with two values or more, its finest last."""
+    """Yield the `Setting`s of each lever with two values or more, its finest last, in the smallest drum at its lowest speed."""
     rows, _ = of_model(rows, "continuum", "")
+    _, _, rows = next(by_speed(rows), (None, None, rows))
     for lever, best in FINEST.items() if len(rows) else ():
         same = rows_of(rows, lever)
         values = sorted(same[lever].unique(), reverse=best is min)
