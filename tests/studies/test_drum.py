@@ -178,8 +178,6 @@ def test_speed_is_given_in_either_way(drum):
         (dict(dt_factor=1e-4), "the run would take"),
         (dict(turn=1e-4), "turn=0.0001 must hold four of them"),
         (dict(field_spacing=1e-3), "field_spacing=0.001 d makes .* bins"),
-        (dict(model="continuum"), "model=continuum is not built yet"),
-        (dict(model="both"), "model=both is not built yet"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(drum, keys, words):
