@@ -283,11 +283,15 @@ def most_rows(p):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the time step over the critical one."""
+    """Refuse values that no run can be made of; return the grains' time step over the critical one, nan without grains."""
     check_speed(p)
-    check_room(p)
+    check_diameter(p)
+    if p.model != "continuum":
+        check_room(p)
     if p.model != "dem":
         drum_continuum.check(p)
+    if p.model == "continuum":
+        return float("nan")
     dt, grains = time_step(p), material(p)
     ratio = scene.check_time_step(dt, grains, SMALLEST_DIAMETER / 2, p.largest_overlap)
     most, weight = grains.force_between(0.5, p.largest_overlap), lid.weight_of_bed(p.drum_diameter)
@@ -318,13 +322,17 @@ def check_speed(p):
         )
 
 
-def check_room(p):
-    """UsageError for a drum that is too small, leaky, empty or too full."""
+def check_diameter(p):
+    """UsageError for a drum that is too small for grains, or for taking them as a continuum."""
     if p.drum_diameter < SMALLEST_DRUM:
         raise UsageError(
             f"drum_diameter={p.drum_diameter:g} d has no room for a flow of grains of up to {LARGEST_DIAMETER:g} d; it must be at"
             f" least {SMALLEST_DRUM} d"
         )
+
+
+def check_room(p):
+    """UsageError for a drum that is leaky, empty or too full for grains."""
     if p.filling > drum.MOST_FILLING:
         raise UsageError(
             f"filling={p.filling:g} leaves the grains no room to be poured and to flow; it must be at most {drum.MOST_FILLING:g}"

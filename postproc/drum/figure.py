@@ -93,11 +93,13 @@ def frame_drum(axes, radius):
 
 
 def draw_maps(axes, run, fields, found):
-    """Mean velocities in squares of 4.8 d, or of a thirtieth of a larger drum, as arrows (Fig. 2)."""
+    """Mean velocities in squares of 4.8 d, or of a thirtieth of a larger drum, as arrows (Fig. 2); ill-posed parts in grey."""
     p = run.parameters
     radius = p["drum_diameter"] / 2
     edge = max(ARROWS * min(1, radius / 40), radius / 16)
     axes.add_patch(Circle((0, 0), radius, facecolor="none", edgecolor=BLACK, linewidth=0.8))
+    if "continuum" in fields and "ill_posed" in run.group("fields/continuum"):
+        draw_ill_posed(axes, run)
     for model, field in fields.items():
         x, y, v_x, v_y = in_squares(field, edge)
         colour = LOOKS[model]["color"]
@@ -106,6 +108,25 @@ def draw_maps(axes, run, fields, found):
         axes.quiver(x, y, v_x, v_y, **style)
         draw_surface(axes, found[model].surface, field, radius, colour)
     frame_drum(axes, radius)
+
+
+def draw_ill_posed(axes, run):
+    """Shade in grey where the continuum's equations were ill-posed, the darker the larger a share of the time."""
+    x, y, share = ill_posed_map(run)
+    shown = np.ma.masked_invalid(np.where(share > 0, share, np.nan))
+    axes.pcolormesh(x, y, shown, shading="nearest", rasterized=True, cmap="Greys", vmin=0, vmax=2, zorder=0)
+    told = run.summary.get("ill_posed_share")
+    if told is not None:
+        text = f"grey: equations ill-posed, {100 * told:.0f} % of the grains' area"
+        axes.set_title(text, loc="right", fontsize=6)
+
+
+def ill_posed_map(run):
+    """Return x, y, and the share of the time (ny, nx) in which the continuum was ill-posed, nan outside of its bed."""
+    stored = run.group("fields/continuum")
+    share = np.average(np.nan_to_num(stored["ill_posed"]), axis=0, weights=stored["samples"])
+    bed = read(run, "continuum").mean().fraction > 0
+    return stored["x"], stored["y"], np.where(bed, share, np.nan)
 
 
 def in_squares(field, edge):

@@ -1,5 +1,8 @@
 """The continuum solver as a `March`, and the keywords by which one makes it."""
 
+import time
+import zipfile
+
 import numpy as np
 
 from . import signals
@@ -10,16 +13,17 @@ STATE = "flow.npz"  # file of a checkpoint
 
 
 class FlowMarch:
-    """A `TwoPhaseFlow` that goes on in steps; `size` counts its cells.
+    """A `TwoPhaseFlow` that goes on in steps; `size` counts its cells, `seconds` the processor's time of its steps [s].
 
-    `advance` raises EngineError with what the solver says, `Interrupted` on a signal. After `load` the flow goes on with the
-    same bits.
+    `advance` raises EngineError with what the solver says and `advice`, `Interrupted` on a signal. After `load` the flow goes on
+    with the same bits.
     """
 
     unit = "cell-steps"
 
-    def __init__(self, flow):
-        self.flow = flow
+    def __init__(self, flow, advice=""):
+        self.flow, self.advice = flow, advice
+        self.seconds = 0.0
 
     @property
     def size(self):
@@ -36,22 +40,26 @@ class FlowMarch:
         while steps > 0:
             signals.check()
             some = min(steps, CHUNK)
+            start = time.process_time()
             try:
                 self.flow.advance(some)
             except RuntimeError as error:
-                raise EngineError(str(error)) from None
+                raise EngineError("; ".join(filter(None, (str(error), self.advice)))) from None
+            self.seconds += time.process_time() - start
             steps -= some
 
     def save(self, folder):
         """Write the flow's state into a checkpoint's folder."""
-        np.savez(folder / STATE, **self.flow.state())
+        np.savez(folder / STATE, seconds=self.seconds, **self.flow.state())
 
     def load(self, folder):
         """Take up what `save` wrote; RuntimeError with the reason where that cannot be."""
         try:
             with np.load(folder / STATE) as file:
-                self.flow.restore({name: file[name] if file[name].ndim else file[name].item() for name in file.files})
-        except (OSError, ValueError, KeyError) as error:
+                state = {name: file[name] if file[name].ndim else file[name].item() for name in file.files}
+            self.seconds = state.pop("seconds")
+            self.flow.restore(state)
+        except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
             raise RuntimeError(f"{STATE} does not hold this flow: {error}") from None
 
 

@@ -1,13 +1,14 @@
 """The continuum in a drum, model=continuum of the drum study: the flow, its steady state, and the fields that it leaves.
 
-The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d, rho, g.
-Readings: within the wall's transition there is what lies beside it (the paper lets its layer turn with the wall, and that carries
-grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed creeps by a tenth of Omega
-below the layer; averages begin when the centre of mass has come to rest, after START_TURN at least.
+The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d,
+rho, g. Readings: within the wall's transition there is what lies beside it (the paper lets its layer turn with the wall, and
+that carries grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed creeps by a
+tenth of Omega below the layer; averages begin when the centre of mass has come to rest, after START_TURN at least.
 
 `run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
-[sqrt(g d)]; pressure (blocks, ny, nx) [rho g d]; ill_posed (ny, nx), the share of the time in which the equations were ill-posed.
+[sqrt(g d)]; pressure (blocks, ny, nx) [rho g d]; ill_posed (blocks, ny, nx), the share of the time in which the equations
+were ill-posed.
 """
 
 import sys
@@ -32,6 +33,10 @@ TRANSITION = 2  # half width of the wall's transition, in cells
 START_TURN, MOST_TURN, WINDOW = 45.0, 180.0, 30.0  # degrees: before averages at least, at most, and their length
 BLOCKS = 8
 FEWEST_CELLS = 20
+MOST_FILLING, LEAST_DEPTH = 0.9, 6  # of the drum; of the bed, in cells
+MOST_CROSSED = (
+    0.5  # cells that may be crossed in a step, those of the grid's corners that turn with the wall among them
+)
 RATE = 2.5e6  # cell-steps per second of one core at continuum_dt=0.02
 PART = "continuum"  # of a run with both models, in its checkpoints
 NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_second")
@@ -43,12 +48,21 @@ def check(p):
         raise UsageError(
             f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75"
         )
-    cells = p.drum_diameter / p.cells
-    if p.filling > 0.9:
-        raise UsageError(f"filling={p.filling:g} leaves the continuum no free surface; it must be at most 0.9")
-    wanted = p.filling * np.pi / 4 * p.drum_diameter**2
-    if wanted < 20 * cells**2:
-        raise UsageError(f"filling={p.filling:g} is less than 20 cells of {cells:.3g} d; raise filling or cells")
+    if p.filling > MOST_FILLING:
+        raise UsageError(
+            f"filling={p.filling:g} leaves the continuum no free surface; it must be at most {MOST_FILLING:g}"
+        )
+    deep = (level_of(p) / p.drum_diameter + 0.5) * p.cells
+    if deep < LEAST_DEPTH:
+        raise UsageError(
+            f"filling={p.filling:g} makes a bed {deep:.2g} cells deep, of which the wall's transition takes {TRANSITION}; it must"
+            f" be at least {LEAST_DEPTH} deep: raise filling or cells"
+        )
+    if (crossed := p.omega * p.continuum_dt * (p.cells / 2 + SHELL)) >= MOST_CROSSED:
+        raise UsageError(
+            f"continuum_dt={p.continuum_dt:g} lets the wall cross {crossed:.2g} cells in a step, but it must be less than"
+            f" {MOST_CROSSED:g}; at this speed take less than {p.continuum_dt * MOST_CROSSED / crossed:.3g}"
+        )
     if p.dynamic_friction < p.static_friction:
         raise UsageError(
             f"dynamic_friction={p.dynamic_friction:g} must not be below static_friction={p.static_friction:g}; exchange them"
@@ -148,7 +162,7 @@ def grains_before(folder):
 def run(p, folder):
     """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or go on with it; return its `Blocks`."""
     flow = flow_of(p)
-    march = FlowMarch(flow)
+    march, area = FlowMarch(flow, "lower continuum_dt"), flow.area  # that of the start, of a resumed run too
     going_on = folder.resumed and folder.resumed.get("part") == PART
     before = 0 if p.model == "continuum" else int(folder.provenance["steps"])
     stage = dict(part=PART, average_row=-1)
@@ -162,16 +176,15 @@ def run(p, folder):
         f" a turn in {2 * np.pi / p.omega:.4g} sqrt(d/g)",
         file=sys.stderr,
     )
-    return record(p, folder, march, stage, before, going_on)
+    return record(p, folder, march, stage, before, going_on, area)
 
 
-def record(p, folder, march, stage, before, going_on):
+def record(p, folder, march, stage, before, going_on, area):
     """March to the steady flow and over its averages, then store rows and fields; return the `Blocks`."""
     flow = march.flow
     means = FieldMeans(BLOCKS, flow.fraction.shape)
     track = Record(folder if going_on else NotResumed, means)
     window, first_possible, last_possible = (rows_of(p, turn) for turn in (WINDOW, START_TURN, MOST_TURN))
-    area = flow.area
 
     def sample(_done):
         track.append(row_of(p, march))
@@ -235,6 +248,8 @@ def keep(p, folder, march, track, means, area, stage):
     inside = flow.openness >= 1  # the layer in which fluid becomes wall counts as wall
     fraction = BED_FRACTION * np.clip(means.mean("fraction"), 0, 1) * inside
     ill_posed = means.sums["ill_posed"].sum(axis=0) / means.samples.sum()
+    seen = columns["t"][stage["average_row"] :]
+    settings = dict(spacing=p.drum_diameter / p.cells, phases=BLOCKS, phaseStart=seen[0], period=seen[-1] - seen[0])
     fields = dict(
         x=(x, "d"),
         y=(y, "d"),
@@ -242,14 +257,15 @@ def keep(p, folder, march, track, means, area, stage):
         area_fraction=(fraction, "-"),
         velocity=(means.velocity, "sqrt(g d)"),
         pressure=(means.mean("pressure"), "rho g d"),
-        ill_posed=(ill_posed, "-"),
+        ill_posed=(means.mean("ill_posed"), "-"),
     )
-    folder.write("fields/continuum", fields, spacing=p.drum_diameter / p.cells, part_of_the_bed=BED_FRACTION)
+    folder.write("fields/continuum", fields, part_of_the_bed=BED_FRACTION, **settings)
     bed = np.clip(flow.fraction, 0, 1) * inside
     torque, beside = torque_of(x, fraction), "" if p.model == "continuum" else "continuum_"
     folder.summarize(**{f"{beside}torque": (torque.value, "rho g d^3"), f"{beside}torque_err": torque.error})
     folder.summarize(
         continuum_steps=flow.steps,
+        continuum_core_seconds=(march.seconds, "s"),
         ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
         continuum_area_drift=float(flow.area / area - 1),
         continuum_steady=int(

@@ -181,9 +181,6 @@ def test_speed_is_given_in_either_way(drum):
         (dict(dt_factor=1e-4), "the run would take"),
         (dict(turn=1e-4), "turn=0.0001 must hold four of them"),
         (dict(field_spacing=1e-3), "field_spacing=0.001 d makes .* bins"),
-        (dict(model="continuum", cells=10), "cells=10 across the drum do not resolve its flow; take 20 or more"),
-        (dict(model="both", dynamic_friction=0.2), "dynamic_friction=0.2 must not be below static_friction=0.246"),
-        (dict(model="continuum", viscosity="split"), "no continuum can be made: the time step must not be above"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(drum, keys, words):

@@ -10,6 +10,7 @@ from made_up_runs import write_run
 from graindrive.postproc.drum.flow import analysed
 
 KEYS = dict(model="both", drum_diameter=60.0, angular_velocity=0.01, froude=3e-3, seed=1)
+KEYS.update(continuum_dt=0.02, cells=75, largest_viscosity=8e4, tolerance=1e-5)
 
 
 class MadeUpDrums:
@@ -25,6 +26,10 @@ class MadeUpDrums:
         """h/D of a run."""
         more = self.thicker * np.log2(keys["drum_diameter"] / 60) + self.apart * (model == "continuum")
         return self.intercept + self.slope * keys["froude"] + more
+
+    def seconds(self, keys):
+        """Of a core that the continuum takes, by cells and time step."""
+        return 1e-3 * keys["cells"] ** 2 / keys["continuum_dt"]
 
     def flow(self, keys, model):
         """Return the made-up drum whose u = 0 lies at that h."""
@@ -55,6 +60,8 @@ class MadeUpDrums:
             groups[f"fields/{model}"] = dict(
                 x=field.x, y=field.y, samples=np.array([9]), area_fraction=field.fraction[None], velocity=velocity[None]
             )
+        if "continuum" in models:
+            summary.update(continuum_core_seconds=self.seconds(keys))
         if len(models) == 2:
             summary.update(dem_continuum_difference=3 * self.apart + 0.02, dem_continuum_difference_err=0.005)
         return summary, groups

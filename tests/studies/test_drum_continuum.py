@@ -1,0 +1,332 @@
+"""The drum study's continuum on a coarse grid: surface, layer, static part, kill and resume, both models, extremes, refusals."""
+
+import importlib
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from graindrive import drum_continuum, exports, killtest
+from graindrive.continuum import FlowMarch
+from graindrive.errors import EngineError, Interrupted, UsageError
+from graindrive.postproc.drum import blocks, figure
+from graindrive.postproc.drum.flow import BED_FRACTION
+from graindrive.postproc.reader import Run
+from graindrive.run_folder import RunFolder
+
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
+COARSE = dict(model="continuum", drum_diameter=40, froude=0.02, cells=30, continuum_dt=0.05)
+QUICK = {**COARSE, "froude": 0.1, "cells": 20}
+GRAINS = dict(drum_diameter=20, start_turn=2, turn=2, dt_factor=5)
+SLOW, FAST = (float(np.degrees(np.arctan(mu))) for mu in (0.246, 0.401))  # angles of repose of slow and of fast flow
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    """A cache that the runs of this file share."""
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture
+def drum(monkeypatch, cache):
+    """The study as a module, in this process."""
+    monkeypatch.setenv("GRAINDRIVE_CACHE", str(cache))
+    monkeypatch.syspath_prepend(str(STUDIES))
+    return importlib.import_module("drum")
+
+
+def carry_out(drum, out, **keys):
+    """Run the study with these keys into the folder `out`; return it as a Run."""
+    p = drum.DrumParameters(**{**keys, "out": str(out)})
+    with RunFolder(p, study="drum") as folder:
+        drum.run(p, folder)
+    return Run(out)
+
+
+@pytest.fixture(scope="module")
+def turned(tmp_path_factory):
+    """Folder of the coarse run, once for the tests that look at it."""
+    return tmp_path_factory.mktemp("turned") / "run"
+
+
+@pytest.fixture
+def run(drum, turned):
+    """The coarse run."""
+    return Run(turned) if turned.exists() else carry_out(drum, turned, **COARSE)
+
+
+def contents(path):
+    """Return all that a run left but what its speed decides: arrays of run.h5 and the numbers of summary.json."""
+    arrays = {}
+
+    def visit(name, item):
+        if isinstance(item, h5py.Dataset) and not name.startswith(("parameters", "provenance", "constants")):
+            arrays[name] = item[()]
+
+    with h5py.File(Path(path) / "run.h5") as file:
+        file.visititems(visit)
+    summary = json.loads((Path(path) / "summary.json").read_text())
+    return arrays, {key: value for key, value in summary.items() if key not in killtest.TIMED}
+
+
+def assert_same(one, other):
+    """Two runs left the same bits."""
+    (arrays, summary), (others, other_summary) = contents(one), contents(other)
+    assert arrays.keys() == others.keys()
+    assert {name: str(value) for name, value in summary.items()} == {n: str(v) for n, v in other_summary.items()}
+    for name, values in arrays.items():
+        assert np.array_equal(values, others[name], equal_nan=np.asarray(values).dtype.kind == "f"), name
+
+
+def test_a_layer_flows_down_a_bed_that_turns(run):
+    found = run.summary
+    assert run.state == "complete" and found["continuum_steady"] == 1
+    # The bed slopes by the friction of its layer, between mu_s and mu_2; walls and the round bed add up to some degrees.
+    assert SLOW < found["surface_angle_deg"] < FAST + 5
+    assert found["layer_over_diameter"] == pytest.approx(0.11 + 1.2 * 0.02, abs=0.04)  # the paper's; a cell is 0.033
+    assert found["rigid_deviation"] < 0.05  # of Omega z, as for the paper's drums; 0.015 is usual
+    assert abs(found["flow_balance"]) < 0.15
+    assert found["flow_down"] > 0 > found["flow_up"]
+    assert abs(found["continuum_area_drift"]) < 1e-10
+    assert 0 < found["ill_posed_share"] < 1 and found["continuum_core_seconds"] > 0
+
+
+def test_the_summary_follows_from_the_stored_fields(run):
+    p = run.parameters
+    flow = blocks.steady_flow(blocks.read(run, "continuum"), p["drum_diameter"], p["angular_velocity"])
+    for name, value in flow.summary.items():
+        assert run.summary[name] == pytest.approx(value, rel=1e-12, nan_ok=True)
+    assert len(blocks.read(run, "continuum")) == drum_continuum.BLOCKS
+
+
+def test_the_bed_turns_with_the_drum_until_it_flows(run):
+    """Before the surface yields the centre of mass turns by as much as the drum; then it stays where it is."""
+    rows = run.group("continuum")
+    turn, angle = rows["turn"], rows["centre_angle"]
+    assert np.interp(8, turn, angle) - np.interp(2, turn, angle) == pytest.approx(
+        6, abs=0.3
+    )  # the layer yields by mu_s
+    assert (
+        np.ptp(angle[turn > turn[-1] - 25]) < 5
+    )  # of 25 that the drum turned: the first slide still sways by some degrees
+
+
+def test_the_bed_s_weight_presses_on_its_bottom(run):
+    """p below the axis is about that of the bed above it, rho g cos(angle) times the depth, less what the walls bear."""
+    stored, D = run.group("fields/continuum"), run.parameters["drum_diameter"]
+    column, row = np.abs(stored["x"]).argmin(), np.abs(stored["y"] + 0.35 * D).argmin()
+    pressure = stored["pressure"].mean(axis=0)[row, column]
+    assert pressure == pytest.approx(BED_FRACTION * 0.35 * D, rel=0.25)
+
+
+def test_paraview_s_files_hold_the_fields_in_the_frame_of_the_grains(run):
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+    exports.write(run.path, ["vtk"])
+    stored = run.group("fields/continuum")
+    ny, nx = len(stored["y"]), len(stored["x"])
+    for block in (0, drum_continuum.BLOCKS - 1):
+        reader = vtkXMLImageDataReader()
+        reader.SetFileName(str(run.path / "vtk" / f"fields_continuum_{block + 1:02d}.vti"))
+        reader.Update()
+        image, data = reader.GetOutput(), reader.GetOutput().GetPointData()
+        assert image.GetDimensions() == (nx, ny, 1)
+        assert image.GetOrigin() == pytest.approx((stored["x"][0], stored["y"][0], 0), abs=1e-12)
+        assert image.GetSpacing()[0] == pytest.approx(stored["x"][1] - stored["x"][0], rel=1e-12)
+        for name in ("area_fraction", "pressure", "ill_posed"):
+            read = vtk_to_numpy(data.GetArray(name)).reshape(ny, nx)
+            assert np.array_equal(read, stored[name][block], equal_nan=True)
+        read = vtk_to_numpy(data.GetArray("velocity")).reshape(ny, nx, 3)
+        assert np.array_equal(read[..., :2], stored["velocity"][block], equal_nan=True) and not read[..., 2].any()
+    times = (run.path / "vtk" / "fields_continuum.pvd").read_text()
+    told = [float(part.split('"')[1]) for part in times.split("timestep=")[1:]]
+    assert len(told) == drum_continuum.BLOCKS and min(np.diff(told)) > 0
+    assert 0 < told[0] and told[-1] < run.group("continuum")["t"][-1]
+
+
+def test_the_figure_shows_where_the_equations_are_ill_posed(run):
+    figure.draw(run.path)
+    assert (run.path / "figure.png").stat().st_size > 10_000
+    x, y, share = figure.ill_posed_map(run)
+    stored = run.group("fields/continuum")
+    bed = stored["area_fraction"].mean(axis=0) / BED_FRACTION
+    assert share.shape == (len(y), len(x)) and np.nanmax(share) <= 1
+    # of the grains' area as summary.json says; there by the last state's bed, here by the mean one
+    assert np.nansum(share * bed) / bed.sum() == pytest.approx(run.summary["ill_posed_share"], rel=0.05)
+
+
+# Kill and resume ------------------------------------------------------------------------------------------------------
+
+
+def stop_after(monkeypatch, calls):
+    """Have the continuum's march be interrupted at the start of that call."""
+    advance, count = FlowMarch.advance, iter(range(10**6))
+
+    def stopped(self, steps):
+        if next(count) == calls:
+            raise Interrupted(signal.SIGTERM)
+        return advance(self, steps)
+
+    monkeypatch.setattr(FlowMarch, "advance", stopped)
+    return lambda: monkeypatch.setattr(FlowMarch, "advance", advance)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """Folder of a quick run that nothing interrupted."""
+    return tmp_path_factory.mktemp("whole") / "run"
+
+
+@pytest.mark.parametrize("calls", [20, 75])  # before and within the averages
+def test_an_interrupted_run_goes_on_as_if_it_had_not_been(drum, whole, tmp_path, monkeypatch, calls):
+    if not whole.exists():
+        carry_out(drum, whole, **QUICK)
+    go_on = stop_after(monkeypatch, calls)
+    with pytest.raises(Interrupted):
+        carry_out(drum, tmp_path / "parts", **QUICK, checkpoint_seconds=0)
+    go_on()
+    carry_out(drum, tmp_path / "parts", **QUICK, checkpoint_seconds=0, resume=True)
+    assert_same(whole, tmp_path / "parts")
+
+
+KILLED = """
+import os, sys
+from graindrive import headless
+from graindrive.continuum import FlowMarch
+from graindrive.study import loaded
+study, number = loaded(sys.argv.pop(1)), int(sys.argv.pop(1))
+advance = FlowMarch.advance
+calls = iter(range(10**6))
+def killed(self, steps):
+    if number and next(calls) == 40:
+        os.kill(os.getpid(), number)
+    advance(self, steps)
+FlowMarch.advance = killed
+headless.main(study)
+"""
+
+
+def test_a_process_that_is_asked_to_stop_leaves_a_run_that_goes_on(drum, whole, tmp_path):
+    if not whole.exists():
+        carry_out(drum, whole, **QUICK)
+    place = tmp_path / "killed"
+    keys = [f"{name}={value}" for name, value in QUICK.items()] + [f"out={place}", "checkpoint_seconds=0"]
+
+    def call(number, *more):
+        command = [sys.executable, "-c", KILLED, str(STUDIES / "drum.py"), str(int(number)), *keys, *more]
+        pipes = dict(stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
+        return subprocess.run(
+            command, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}, cwd=tmp_path, **pipes
+        )
+
+    stopped = call(signal.SIGTERM)
+    assert stopped.returncode not in (0, 1), stopped.stderr
+    assert "Traceback" not in stopped.stderr
+    assert not place.exists() and place.with_name("killed.interrupted").is_dir()
+    done = call(0, "resume=1")
+    assert done.returncode == 0, done.stderr
+    assert_same(whole, place)
+
+
+# Both models ----------------------------------------------------------------------------------------------------------
+
+
+def test_both_models_leave_their_flows_side_by_side_and_a_resumed_run_keeps_the_grains(drum, tmp_path, monkeypatch):
+    keys = {**QUICK, **GRAINS, "model": "both"}
+    whole = carry_out(drum, tmp_path / "whole", **keys)
+    assert blocks.models_in(whole) == ["dem", "continuum"]
+    found = whole.summary
+    assert {"continuum_surface_angle_deg", "surface_angle_deg", "dem_continuum_difference"} <= found.keys()
+    assert 5 < found["continuum_surface_angle_deg"] < 40
+    assert whole.provenance["n_grains"] == drum.DrumParameters(**keys).count
+    go_on, built = stop_after(monkeypatch, 50), drum.build
+    with pytest.raises(Interrupted):
+        carry_out(drum, tmp_path / "parts", **keys, checkpoint_seconds=0)
+    go_on()
+    monkeypatch.setattr(drum, "build", lambda *_: pytest.fail("the grains were poured again"))
+    carry_out(drum, tmp_path / "parts", **keys, checkpoint_seconds=0, resume=True)
+    monkeypatch.setattr(drum, "build", built)
+    assert_same(tmp_path / "whole", tmp_path / "parts")
+
+
+# Extremes -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "keys, low, high",
+    [
+        # The surface of a thin bed slopes by its friction; that of a nearly full drum cannot be seen in the centre of mass.
+        (dict(filling=0.2), SLOW, FAST + 3),
+        (dict(filling=0.9), 0, 60),
+        # Fluid of a small viscosity slopes less than grains; a large one adds its own resistance.
+        (dict(largest_viscosity=1e2, continuum_dt=0.02), 5, FAST + 3),
+        (dict(largest_viscosity=1e6), SLOW, FAST + 6),
+        (dict(rheology="regularised"), SLOW, FAST + 3),
+        (dict(froude=0.9, continuum_dt=0.02), FAST, 90),  # a bed that is nearly centrifuged is carried up far
+    ],
+)
+def test_an_extreme_flow_keeps_its_area_and_slopes_as_it_must(drum, keys, low, high):
+    p = drum.DrumParameters(**{**COARSE, "cells": 30 if "filling" in keys else 24, "froude": 0.05, **keys})
+    drum.check(p)
+    flow = drum_continuum.flow_of(p)
+    march, area = FlowMarch(flow), flow.area
+    march.advance(int(np.radians(70) / (p.omega * p.continuum_dt)))
+    row = drum_continuum.row_of(p, march)
+    assert low < row["centre_angle"] < high
+    assert flow.area == pytest.approx(area, rel=1e-12)
+    assert flow.fraction.min() > -1e-12 and flow.fraction.max() < 1 + 1e-6  # what the projection's tolerance leaves
+    assert np.isfinite(flow.pressure).all()
+    assert p.rheology == "mu_i" or not flow.ill_posed.any()
+
+
+def test_a_slow_drum_carries_its_bed_along_as_it_is(drum):
+    p = drum.DrumParameters(**{**COARSE, "froude": 1e-6, "cells": 24})
+    drum.check(p)
+    flow = drum_continuum.flow_of(p)
+    FlowMarch(flow).advance(400)
+    x, y = drum_continuum.grid_of(p)
+    deep = (flow.fraction > 0.999) & (flow.openness >= 1) & (y[:, None] < -0.1 * p.drum_diameter)
+    rigid = p.omega * np.stack(np.broadcast_arrays(-y[:, None], x[None, :]), axis=-1)
+    # what is left of the start, a bed at rest that the wall takes along
+    assert np.abs(flow.velocity - rigid)[deep].max() < 0.1 * p.omega * p.drum_diameter / 2
+
+
+def test_a_flow_that_outruns_its_step_says_which_key_to_lower(drum, tmp_path):
+    with pytest.raises(EngineError, match="must cross less than half a cell .* lower continuum_dt"):
+        carry_out(drum, tmp_path / "run", **{**COARSE, "froude": 0.05, "continuum_dt": 0.3, "largest_viscosity": 1e2})
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        (dict(cells=10), "cells=10 across the drum do not resolve its flow; take 20 or more"),
+        (dict(dynamic_friction=0.2), "dynamic_friction=0.2 must not be below static_friction=0.246; exchange them"),
+        (
+            dict(viscosity="split"),
+            "no continuum can be made: the time step must not be above .* got 0.05; take a smaller",
+        ),
+        (dict(filling=0.02), r"filling=0.02 makes a bed 1.6 cells deep, .* at least 6 deep: raise filling or cells"),
+        (dict(filling=0.95), "filling=0.95 leaves the continuum no free surface; it must be at most 0.9"),
+        (dict(pressure_solver="guess"), "of these keys no continuum can be made: .*guess"),
+        (
+            dict(froude=0.05, continuum_dt=0.5),
+            r"continuum_dt=0.5 lets the wall cross 0.78 cells .* take less than 0.3",
+        ),
+        (dict(froude=1.0), "Fr=1 at D=40 d: from 1 on grains are centrifuged; lower angular_velocity or froude"),
+        (dict(continuum_dt=1e-12), "the run would take"),
+        (dict(drum_diameter=10), "drum_diameter=10 d has no room"),
+        (dict(model="both", filling=0.8), "filling=0.8 leaves the grains no room"),
+    ],
+)
+def test_what_cannot_be_run_is_refused_in_one_line(drum, keys, words):
+    with pytest.raises(UsageError, match=words) as refused:
+        drum.check(drum.DrumParameters(**{**COARSE, **keys}))
+    assert "\n" not in str(refused.value) and len(str(refused.value)) < 250
