@@ -92,8 +92,8 @@ boost::shared_ptr<TwoPhaseFlow> flow_of(const py::object& fraction, const py::ob
 	const Distance distance = [&](double x, double y) { return surface.nearest({ x, y, 0 }).distance; };
 	const double half_width = words.transition * grid.spacing;
 	const Domain domain(grid, distance, half_width, words.wall);
-	return boost::make_shared<TwoPhaseFlow>(grid, domain, words.all_fluids(), words.all_settings(), fraction_at,
-		WallLayer(grid, domain, distance, half_width));
+	return boost::make_shared<TwoPhaseFlow>(
+		grid, domain, words.all_fluids(), words.all_settings(), fraction_at, WallLayer(grid, domain, distance, half_width));
 }
 
 py::object construct(const py::tuple& arguments, const py::dict& keywords)

@@ -72,7 +72,8 @@ Domain::Domain(const Grid& grid, const Distance& distance, double half_width, co
 
 WallLayer::WallLayer(const Grid& grid, const Domain& domain, const Distance& distance, double half_width)
 {
-	const double h = grid.spacing, inside = half_width + 0.75 * h;  // of that depth the four cells around a point are mostly fluid
+	const double h = grid.spacing,
+				 inside = half_width + 0.75 * h;  // of that depth the four cells around a point are mostly fluid
 	grid.for_cells([&](int i, int j, std::size_t c) {
 		if (domain.cell_open[c] >= 1) return;
 		const double x = grid.centre_x(i), y = grid.centre_y(j), e = 0.25 * h;

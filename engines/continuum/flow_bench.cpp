@@ -34,8 +34,7 @@ int main(int count, char** words)
 	fluids.largest_viscosity = 8000;
 	fluids.gas_viscosity = 8e-3;
 	fluids.least_pressure = 1e-5;
-	TwoPhaseFlow flow(grid, domain, fluids, how,
-		[&](double x, double y) { return y < 0 ? 1.0 : 0.0; });
+	TwoPhaseFlow flow(grid, domain, fluids, how, [&](double x, double y) { return y < 0 ? 1.0 : 0.0; });
 	const double area = flow.area();
 	std::printf("stable step %g, area %.10g\n", flow.stable_step(), area);
 	const auto clock = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };

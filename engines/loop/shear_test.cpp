@@ -199,7 +199,7 @@ TEST(Shear, forces_and_springs_of_a_pair_do_not_know_where_the_side_is)
 
 TEST(Shear, a_restart_in_mid_shear_goes_on_with_the_same_bits_on_any_number_of_threads)
 {
-	const test::TemporaryFile file;
+	const graindrive::test::TemporaryFile file;
 	const std::string& path = file.path();
 	Stepper<2> whole(sheared_crowd(16, 7, 3, 2.5));
 	whole.track_energy(true);

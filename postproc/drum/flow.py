@@ -24,8 +24,8 @@ ABOVE = 0.1  # of the diameter: where profiles begin, above the axis
 class FlowField:
     """A steady flow on a grid: `x` (nx,), `y` (ny,) centres of cells, evenly spaced, the axis at 0; fields (ny, nx).
 
-    `fraction` is the solid fraction, of a continuum `BED_FRACTION` times the volume fraction of the granular phase. Velocities count where it is not
-    0, and may be nan elsewhere. The free surface is where it falls to `surface_level`.
+    `fraction` is the solid fraction, of a continuum `BED_FRACTION` times the volume fraction of the granular phase. Velocities
+    count where it is not 0, and may be nan elsewhere. The free surface is where it falls to `surface_level`.
     """
 
     x: np.ndarray

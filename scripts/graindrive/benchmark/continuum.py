@@ -1,4 +1,4 @@
-"""Times the continuum solver on the drum of Oba, Otsuki (2025): cells per second, what its parts take, against grid and solver."""
+"""Times the continuum solver on the drum of Oba, Otsuki (2025): cells per second and shares, against grid and solver."""
 
 import statistics
 import sys
