@@ -10,8 +10,8 @@ Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (
 da Cruz et al., PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with
 shear_rate as a key of its own: there p follows, and with it I.
 
-The pressure is a choice: grains count as stiff where k_n/P is large. 100 rho g d makes it 1,570; runs at a quarter and four
-times the pressure, at equal I, show what that changes (studies/RESULTS.md).
+The pressure is a choice: grains count as stiff where k_n/P is large. 25 rho g d, that of a drum 38 d deep, makes it 6,280; runs
+at a quarter and four times the pressure, at equal I, show what that changes (studies/RESULTS.md).
 
 Measured are tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses, contacts of a
 grain, each with the error of a correlated series, and how far the velocity profile is from a straight line.
@@ -65,7 +65,7 @@ class ShearParameters(StudyParameters):
     shear_rate: Optional[float] = quantity(
         None, "sqrt(g/d)", "dv_x/dy; auto: that of inertial_number at the pressure", gt=0
     )
-    pressure: float = quantity(100.0, "rho g d", "P to which the height answers", gt=0)
+    pressure: float = quantity(25.0, "rho g d", "P to which the height answers", gt=0)
     area_fraction: float = quantity(
         0.0, "-", "hold this area fraction in place of the pressure; 0: hold the pressure", ge=0, le=0.9
     )
