@@ -45,9 +45,11 @@ def test_the_likely_reading_is_reproduced_and_the_printed_one_is_not(folder, tmp
     assert claims_of(other, MadeUpDrums(intercept=0.2), "thickness_claims")[0].verdict is Verdict.NOT_REPRODUCED
 
 
+@pytest.mark.parametrize("model", [["both"], ["dem", "continuum"]])
 @pytest.mark.parametrize("apart, verdict", [(0.0, Verdict.REPRODUCED), (0.05, Verdict.NOT_REPRODUCED)])
-def test_the_difference_of_the_models_is_judged_at_each_speed(folder, apart, verdict):
-    found = [c for c in claims_of(folder, MadeUpDrums(apart=apart), "profile_claims") if "one u(z)" in c.text]
+def test_the_difference_of_the_models_is_judged_at_each_speed(folder, apart, verdict, model):
+    made = claims_of(folder, MadeUpDrums(apart=apart), "profile_claims", model=model)
+    found = [c for c in made if "one u(z)" in c.text]
     assert len(found) == 6 and {c.verdict for c in found} == {verdict}
 
 
