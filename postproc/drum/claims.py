@@ -125,6 +125,6 @@ def surface_claims(_campaign, rows):
     for model, chosen, name in modelled(rows, "surface_over_diameter"):
         groups = [quantity(same, name) for _, _, same in by_speed(chosen)]
         farthest = max(groups, key=lambda found: abs(found.value))
-        text = f"{NAMES[model]}: the surface passes through the axis; z_surface/D where it is farthest"
+        text = f"{NAMES[model]}: surface through the axis; z_surface/D where farthest"
         claims.append(claim(chosen, text, "appendix D, Fig. 9", "≈ 0", farthest, Agrees(0, 0.01, 0.01)))
     return claims

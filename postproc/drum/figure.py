@@ -78,7 +78,8 @@ def speed_limit(found, scale):
 
 def draw_surface(axes, surface, field, radius, colour):
     """Where the fraction falls to the surface's level, and the line that gives its angle."""
-    beside_the_wall = np.hypot(field.x[None, :], field.y[:, None]) > 0.97 * radius - 1
+    cell = field.x[1] - field.x[0]  # of a continuum the last two before the wall belong to it
+    beside_the_wall = np.hypot(field.x[None, :], field.y[:, None]) > 0.97 * radius - 1 - 2 * cell
     fraction = np.ma.masked_where(beside_the_wall, field.fraction)
     axes.contour(field.x, field.y, fraction, [field.surface_level], colors=[colour], linewidths=0.8)
     if len(surface.x):

@@ -32,7 +32,8 @@ def velocity_maps(campaign, rows, claims):
     shown = {model: field_of(campaign, same, model) for model in MODELS}
     shown = {model: field.within(diameter) for model, field in shown.items() if field}
     count = max(1, len(shown))
-    figure, axes = canvas(1, count, claims, width=count * figures.COLUMN_WIDTH, height=2.9)
+    figure, axes = canvas(1, count, claims, width=count * figures.COLUMN_WIDTH, height=3.1)
+    figure.get_layout_engine().set(h_pad=0.12)  # room for the titles above panels of fixed aspect
     for k, (model, field) in enumerate(shown.items()):
         panel, radius = axes[0, k], diameter / 2
         panel.add_patch(Circle((0, 0), radius, facecolor="none", edgecolor=BLACK, linewidth=0.8))
