@@ -8,6 +8,7 @@ CLASSES = [
     engines.OscillationDrive,
     engines.SpinTranslateDrive,
     engines.DrumDrive,
+    engines.ShearDrive,
     engines.ContactForceBinner,
     engines.FieldAverager,
     engines.GrainLoop,
