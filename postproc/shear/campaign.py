@@ -59,7 +59,7 @@ def held_pressure(rows):
     inertial, pressure = curve(rows, "inertial_number", "mean_pressure")
     ratios = [p / float(rows["pressure"].iloc[0]) for p in pressure]
     worst = max(range(len(ratios)), key=lambda k: abs(ratios[k].value - 1))
-    text = f"runs have come to their pressure; the p/P furthest from 1, at I = {inertial[worst]:g}"
+    text = f"come to their pressure; p/P furthest from 1, at I = {inertial[worst]:g}"
     return claim(
         at(rows, inertial_number=inertial[worst]), text, "this study", "1", ratios[worst], Agrees(1, 0.02, 0.05)
     )
