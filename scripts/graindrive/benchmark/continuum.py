@@ -10,6 +10,7 @@ NAME, LAW = "continuum", "mu_i"
 TURNED = 0.35  # rad by which a drum has turned before it is timed: its surface flows
 SPIN_UP_STEP = 0.02  # sqrt(d/g), with which it gets there
 PAPERS_STEP, PAPERS_SOLVER = 1e-4, "bicgstab"
+PAPERS_VISCOSITY = 8000.0  # m sqrt(g/d)
 FINE_STEP = 1e-5  # on the large grid, where the paper's is above the bound of the explicit viscosity
 LARGE = 368  # cells across, 400 with the shell
 PARTS = "material forces pressure viscosity surface".split()
@@ -50,7 +51,7 @@ def started(p, turned):
 def measure(study, quick):
     """Yield the rows: the paper's settings with our solver and with its own, our settings, and a grid of 400^2 cells."""
     rounds, steps = (3, 40) if quick else (7, 200)
-    papers = dict(viscosity="split", continuum_dt=PAPERS_STEP)
+    papers = dict(viscosity="split", continuum_dt=PAPERS_STEP, largest_viscosity=PAPERS_VISCOSITY)
     ours = Drum(study, 75, **papers)
     theirs = Drum(study, 75, pressure_solver=PAPERS_SOLVER, **papers)
     yield row(ours, theirs, rounds, steps, "BiCGSTAB, as the paper", steps // 4)
