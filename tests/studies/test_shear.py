@@ -34,7 +34,7 @@ def carry_out(shear, out, **changes):
 
 
 def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path):
-    series, found = carry_out(shear, tmp_path / "run", strain=4.0, settle_strain=2.0)
+    series, found = carry_out(shear, tmp_path / "run", strain=4.0, settle_strain=2.0, pressure=100.0)
     assert found["mean_pressure"] == pytest.approx(100, rel=0.1)  # of 80 disks that flow, over two strains
     assert 0.1 < found["stress_ratio"] < 1 and 0.6 < found["phi"] < 0.85
     trace = sum(series[f"{part}_s{axis}"] for part in ("contact", "kinetic") for axis in ("xx", "yy"))
