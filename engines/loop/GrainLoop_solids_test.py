@@ -221,11 +221,12 @@ def test_contacts_with_a_solid_carry_the_weight():
     assert table["overlap"] == pytest.approx((weight / (2e5 * math.sqrt(0.5))) ** (2 / 3), rel=1e-9)
 
 
-def test_a_scene_with_solids_is_taken_over_and_given_back_with_its_springs():
-    """Springs between spheres and at the solid go along both ways."""
+@pytest.mark.parametrize("period", [None, (20, 6, 40)])
+def test_a_scene_with_an_endless_solid_is_taken_over_and_given_back_with_its_springs(period):
+    """Springs between spheres and at the solid go along both ways, in a periodic cell too, where YADE's collider sorts its bounds."""
     after = []
     for exchanged in (False, True):
-        disks.new_scene(dt=2e-4)
+        disks.new_scene(dt=2e-4, period=period)
         solid(surfaces.cylinder((0, 0, 0), (0, 1, 0), 1.5), spin=(0, 2, 0))
         heap(over=(0, 0, 2.1))
         yades()
