@@ -479,6 +479,12 @@ def particle_steps(p):
     return p.count * np.radians(p.start_turn + p.turn) / radians_per_step(p)
 
 
+def work(p):
+    """Return the steps of grains and of cells that the models of a run take together."""
+    grains = particle_steps(p) if p.model != "continuum" else 0.0
+    return grains + (drum_continuum.cell_steps(p) if p.model != "dem" else 0.0)
+
+
 def core_seconds(p):
     """Return the seconds that a run takes one core, grains and continuum."""
     grains = particle_steps(p) / np.interp(p.count, *RATES) if p.model != "continuum" else 0.0
@@ -495,7 +501,7 @@ STUDY = Study(
         "thickness_over_diameter froude surface_angle_deg packing_fraction layer_over_diameter surface_over_diameter"
         " surface_speed flow_down flow_up flow_balance rigid_deviation torque centre_angle",
     ),
-    cost=Cost(particle_steps, lambda p: particle_steps(p) / max(core_seconds(p), 1e-9)),
+    cost=Cost(work, lambda p: work(p) / core_seconds(p), unit="grain- or cell-steps"),
     check=check,
     run=run,
     figure=figure.draw,

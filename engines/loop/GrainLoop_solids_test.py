@@ -223,7 +223,7 @@ def test_contacts_with_a_solid_carry_the_weight():
 
 @pytest.mark.parametrize("period", [None, (20, 6, 40)])
 def test_a_scene_with_an_endless_solid_is_taken_over_and_given_back_with_its_springs(period):
-    """Springs between spheres and at the solid go along both ways, in a periodic cell too, where YADE's collider sorts its bounds."""
+    """Springs between spheres and at the solid go along both ways, in a periodic cell too, where YADE sorts its bounds."""
     after = []
     for exchanged in (False, True):
         disks.new_scene(dt=2e-4, period=period)

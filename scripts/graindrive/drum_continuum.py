@@ -37,7 +37,7 @@ MOST_FILLING, LEAST_DEPTH = 0.9, 6  # of the drum; of the bed, in cells
 MOST_CROSSED = (
     0.5  # cells that may be crossed in a step, those of the grid's corners that turn with the wall among them
 )
-RATE = 2.5e6  # cell-steps per second of one core at continuum_dt=0.02
+RATE = 3e6  # cell-steps per second of one core at continuum_dt=0.02
 PART = "continuum"  # of a run with both models, in its checkpoints
 NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_second")
 
@@ -125,10 +125,15 @@ def rows_of(p, degrees):
     return max(1, round(np.radians(degrees) / (p.omega * p.continuum_dt * block_steps(p))))
 
 
+def cell_steps(p):
+    """Return the cells times steps of a run that is steady at once."""
+    steps = np.radians(START_TURN + WINDOW) / (p.omega * p.continuum_dt)
+    return steps * (p.cells + 2 * SHELL) ** 2
+
+
 def seconds(p):
     """Return the seconds that `run` takes one core."""
-    steps = np.radians(START_TURN + WINDOW) / (p.omega * p.continuum_dt)
-    return steps * (p.cells + 2 * SHELL) ** 2 / RATE
+    return cell_steps(p) / RATE
 
 
 class Record(recording.Track):
