@@ -84,11 +84,9 @@ def lever_claims(campaign, rows):
     for lever, found in by_lever(campaign, rows).items():
         best, finest = cheapest(found), found[-1]
         for one in found[:-1]:
-            text = (
-                f"{SYMBOLS[lever]} = {one.value:g} against {finest.value:g}: norm of the difference of u(z) over that of u;"
-                f" h/D {one.thickness.value:.4f} ({finest.thickness.value:.4f}), angle {one.angle.value:.2f}°"
-                f" ({finest.angle.value:.2f}°), {one.seconds:.0f} s ({finest.seconds:.0f} s) of a core"
-                + ("; the cheapest within 1 %" if one is best else "")
+            text = f"error of u(z), {SYMBOLS[lever]} = {one.value:g} against {finest.value:g}:"
+            text += f" {one.seconds:.0f} s, {finest.seconds:.0f} s" + (
+                "; the cheapest within 1 %" if one is best else ""
             )
             same = rows_of(rows, lever)
             claims.append(claim(same[same[lever] == one.value], text, "ours", "≤ 0.01", one.error, below(WITHIN)))

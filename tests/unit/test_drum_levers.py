@@ -55,10 +55,10 @@ def test_claims_name_value_error_and_cost(campaign):
     rows = rows_of(campaign)
     claims = levers.lever_claims(campaign, rows)
     assert len(claims) == 4  # two values of each lever beside its finest
-    grids = [claim for claim in claims if claim.text.startswith("cells")]
-    assert {claim.verdict for claim in grids} == {Verdict.REPRODUCED} and "80 s (1125 s) of a core" in grids[0].text
+    grids = [claim for claim in claims if claim.text.startswith("error of u(z), cells")]
+    assert {claim.verdict for claim in grids} == {Verdict.REPRODUCED} and "80 s, 1125 s" in grids[0].text
     assert sum("the cheapest within 1 %" in claim.text for claim in grids) == 1
-    coarse = next(claim for claim in claims if claim.text.startswith("dt = 0.08"))
+    coarse = next(claim for claim in claims if claim.text.startswith("error of u(z), dt = 0.08"))
     assert coarse.verdict is Verdict.NOT_REPRODUCED
 
 
