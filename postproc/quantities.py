@@ -163,7 +163,7 @@ QUANTITIES = {
             layer_over_diameter="drum: depth below the free surface at which u = 0, over D",
             surface_over_diameter="drum: z of the free surface on the line through the axis, < 0 above the axis, over D",
             froude="drum: Omega^2 D/2g",
-            packing_fraction="drum: solid fraction in the static part; of a continuum the volume fraction of its granular phase",
+            packing_fraction="drum: solid fraction in the static part; of a continuum 0.825 times that of its granular phase",
             surface_speed="drum: largest u over Omega D",
             flow_down="drum: Q+, integral of fraction times u where u > 0, over Omega D^2",
             flow_up="drum: Q-, the same where u < 0",

@@ -2,8 +2,9 @@
 
 The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d,
 rho, g. Readings: within the wall's transition there is what lies beside it (the paper lets its layer turn with the wall, and
-that carries grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed creeps by a
-tenth of Omega below the layer; averages begin when the centre of mass has come to rest, after START_TURN at least.
+that carries grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed would turn
+5 % off rigid rotation, and results still depend on it (drum_levers.yaml); averages begin when the centre of mass has come to
+rest, after START_TURN at least.
 
 `run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
