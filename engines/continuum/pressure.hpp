@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engines/continuum/domain.hpp"
-#include "engines/continuum/pressure_solver.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
 
 namespace graindrive::continuum {
 

@@ -1,7 +1,7 @@
 /// What all solvers of the pressure share: the matrix, checks of what is given, mean values by part, the true residual.
 #pragma once
-#include "engines/continuum/pressure_solver.hpp"
-#include "engines/continuum/preconditioner.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
+#include "engines/continuum/pressure/preconditioner.hpp"
 
 namespace graindrive::continuum {
 

@@ -1,12 +1,12 @@
 /// What coefficients are refused, and how.
-#include "engines/continuum/face_coefficients.hpp"
+#include "engines/continuum/pressure/face_coefficients.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "engines/continuum/split_grid.hpp"
+#include "engines/continuum/pressure/split_grid.hpp"
 #include "engines/geometry/refuse.hpp"
 
 namespace graindrive::continuum {

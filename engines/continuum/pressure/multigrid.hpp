@@ -6,7 +6,7 @@
 /// grid, since only links are stored and the diagonal is their sum.
 /// The cycle is a V with one sweep of coloured Gauss-Seidel before and one, in opposite order, after: so it is symmetric.
 #pragma once
-#include "engines/continuum/preconditioner.hpp"
+#include "engines/continuum/pressure/preconditioner.hpp"
 
 namespace graindrive::continuum {
 

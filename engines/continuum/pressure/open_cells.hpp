@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "engines/continuum/five_point.hpp"
+#include "engines/continuum/pressure/five_point.hpp"
 
 namespace graindrive::continuum {
 

@@ -1,8 +1,8 @@
 /// The sparse Cholesky factor of an older matrix as preconditioner, taken anew when it has aged.
 #include <Eigen/SparseCholesky>
 
-#include "engines/continuum/open_cells.hpp"
-#include "engines/continuum/preconditioner.hpp"
+#include "engines/continuum/pressure/open_cells.hpp"
+#include "engines/continuum/pressure/preconditioner.hpp"
 
 namespace graindrive::continuum {
 namespace {

@@ -1,5 +1,5 @@
 /// Preconditioned conjugate gradients (Hestenes, Stiefel 1952).
-#include "engines/continuum/krylov.hpp"
+#include "engines/continuum/pressure/krylov.hpp"
 
 namespace graindrive::continuum {
 namespace {

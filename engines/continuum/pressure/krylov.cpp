@@ -1,5 +1,5 @@
 /// The frame of a solve.
-#include "engines/continuum/krylov.hpp"
+#include "engines/continuum/pressure/krylov.hpp"
 
 #include <algorithm>
 #include <cmath>

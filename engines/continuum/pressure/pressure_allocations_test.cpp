@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <new>
 
-#include "engines/continuum/drum_example.hpp"
-#include "engines/continuum/extrapolation.hpp"
-#include "engines/continuum/pressure_solver.hpp"
+#include "engines/continuum/pressure/drum_example.hpp"
+#include "engines/continuum/pressure/extrapolation.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
 
 namespace {
 long allocations = 0;

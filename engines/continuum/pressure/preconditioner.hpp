@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "engines/continuum/five_point.hpp"
+#include "engines/continuum/pressure/five_point.hpp"
 
 namespace graindrive::continuum {
 

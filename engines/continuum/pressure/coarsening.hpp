@@ -1,6 +1,6 @@
 /// From an operator to the interpolation from the next coarser grid, and to the operator there.
 #pragma once
-#include "engines/continuum/multigrid_links.hpp"
+#include "engines/continuum/pressure/multigrid_links.hpp"
 
 namespace graindrive::continuum {
 

@@ -1,9 +1,9 @@
 /// Solvers by name.
-#include "engines/continuum/pressure_solver.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
 
 #include <stdexcept>
 
-#include "engines/continuum/krylov.hpp"
+#include "engines/continuum/pressure/krylov.hpp"
 
 namespace graindrive::continuum {
 namespace {

@@ -1,7 +1,7 @@
 /// The cycle.
-#include "engines/continuum/multigrid.hpp"
+#include "engines/continuum/pressure/multigrid.hpp"
 
-#include "engines/continuum/coarsening.hpp"
+#include "engines/continuum/pressure/coarsening.hpp"
 
 namespace graindrive::continuum {
 namespace {

@@ -5,11 +5,11 @@
 #include <new>
 
 #include "engines/base/complaint.hpp"
-#include "engines/continuum/drum_example.hpp"
-#include "engines/continuum/extrapolation.hpp"
-#include "engines/continuum/preconditioner.hpp"
-#include "engines/continuum/pressure_solver.hpp"
-#include "engines/continuum/pressure_test_support.hpp"
+#include "engines/continuum/pressure/drum_example.hpp"
+#include "engines/continuum/pressure/extrapolation.hpp"
+#include "engines/continuum/pressure/preconditioner.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
+#include "engines/continuum/pressure/pressure_test_support.hpp"
 
 namespace graindrive::continuum {
 namespace {

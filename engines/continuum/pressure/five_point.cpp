@@ -1,5 +1,5 @@
 /// Loading, and products of the matrix with a vector.
-#include "engines/continuum/five_point.hpp"
+#include "engines/continuum/pressure/five_point.hpp"
 
 namespace graindrive::continuum {
 

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "engines/continuum/face_coefficients.hpp"
+#include "engines/continuum/pressure/face_coefficients.hpp"
 
 namespace graindrive::continuum {
 

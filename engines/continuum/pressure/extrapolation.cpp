@@ -1,5 +1,5 @@
 /// The ring of past solutions.
-#include "engines/continuum/extrapolation.hpp"
+#include "engines/continuum/pressure/extrapolation.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 /// Division by the diagonal, the plainest preconditioner.
-#include "engines/continuum/preconditioner.hpp"
+#include "engines/continuum/pressure/preconditioner.hpp"
 
 namespace graindrive::continuum {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "engines/continuum/face_coefficients.hpp"
-#include "engines/continuum/split_grid.hpp"
+#include "engines/continuum/pressure/face_coefficients.hpp"
+#include "engines/continuum/pressure/split_grid.hpp"
 
 namespace graindrive::continuum {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engines/continuum/face_coefficients.hpp"
+#include "engines/continuum/pressure/face_coefficients.hpp"
 
 namespace graindrive::continuum {
 

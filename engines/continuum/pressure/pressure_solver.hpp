@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engines/continuum/face_coefficients.hpp"
+#include "engines/continuum/pressure/face_coefficients.hpp"
 
 namespace graindrive::continuum {
 

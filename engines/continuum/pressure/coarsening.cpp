@@ -1,5 +1,5 @@
 /// Weights by Dendy (1982), and the Galerkin product, eight coarse cells at once.
-#include "engines/continuum/coarsening.hpp"
+#include "engines/continuum/pressure/coarsening.hpp"
 
 namespace graindrive::continuum {
 namespace {

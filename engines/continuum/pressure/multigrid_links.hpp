@@ -1,6 +1,6 @@
 /// How the kernels of multigrid read an operator and find the neighbours of a cell.
 #pragma once
-#include "engines/continuum/multigrid.hpp"
+#include "engines/continuum/pressure/multigrid.hpp"
 
 namespace graindrive::continuum {
 

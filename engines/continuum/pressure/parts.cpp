@@ -1,5 +1,5 @@
 /// Runs of connected cells in each row, joined from row to row (union-find).
-#include "engines/continuum/parts.hpp"
+#include "engines/continuum/pressure/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "engines/continuum/drum_example.hpp"
-#include "engines/continuum/extrapolation.hpp"
-#include "engines/continuum/pressure_solver.hpp"
+#include "engines/continuum/pressure/drum_example.hpp"
+#include "engines/continuum/pressure/extrapolation.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
 
 using namespace graindrive::continuum;
 

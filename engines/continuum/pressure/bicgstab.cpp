@@ -1,5 +1,5 @@
 /// Stabilised biconjugate gradients (van der Vorst 1992), preconditioned from the right: for comparison, since the drum paper uses them.
-#include "engines/continuum/krylov.hpp"
+#include "engines/continuum/pressure/krylov.hpp"
 
 namespace graindrive::continuum {
 namespace {

@@ -1,6 +1,6 @@
 /// The matrix of the pressure equation on the finest grid: (A u)_c = sum over faces b (u_c - u_neighbour), symmetric, positive semidefinite.
 #pragma once
-#include "engines/continuum/parts.hpp"
+#include "engines/continuum/pressure/parts.hpp"
 
 namespace graindrive::continuum {
 

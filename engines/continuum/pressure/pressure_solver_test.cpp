@@ -1,5 +1,5 @@
 /// Every solver against closed forms and a dense solve; what is refused; that nothing is left behind from step to step.
-#include "engines/continuum/pressure_solver.hpp"
+#include "engines/continuum/pressure/pressure_solver.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "engines/base/complaint.hpp"
-#include "engines/continuum/drum_example.hpp"
-#include "engines/continuum/pressure_test_support.hpp"
+#include "engines/continuum/pressure/drum_example.hpp"
+#include "engines/continuum/pressure/pressure_test_support.hpp"
 
 namespace graindrive::continuum {
 namespace {
