@@ -76,7 +76,12 @@ QUANTITIES = {
             pressure_at_body="wiggle: weight over width of bed and lid above the body's centre at rest",
         ),
         **of("d", travel="Magnus: how far the body goes in all, also where the key is auto"),
-        **of("s", wall_s="wall time of the run, interrupted parts included"),
+        **of(
+            "s",
+            wall_s="wall time of the run, interrupted parts included",
+            core_seconds="processor time of all threads of the run, interrupted parts included",
+        ),
+        **of("MB", peak_memory="largest memory that the program had in use"),
         **of("", shape="wiggle: the key"),
         **of(
             "length", amplitude="wiggle: the key A; a velocity with drive=velocity", y_final="rise of the body in all"

@@ -106,9 +106,11 @@ class DrumParameters(StudyParameters):
         None, "d", "edge of the fields' bins; auto: 0.6, for drums over 200 d 1.2", gt=0, le=5
     )
     frames: int = quantity(
-        1, "-", "pictures of the drum that are kept, evenly in time, the last at the end", ge=1, le=9999
+        1, "-", "pictures of the drum that are kept, evenly in time, the last at the end", ge=1, le=9999, watches=True
     )
-    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    largest_overlap: float = quantity(
+        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+    )
     cells: int = quantity(75, "-", "continuum: cells across the drum", ge=1, le=2000, lever=Lever(300, "lower"))
     continuum_dt: float = quantity(
         0.02, "sqrt(d/g)", "continuum: time step; the paper's is 1e-4", gt=0, lever=Lever(1e-3, "higher")

@@ -96,11 +96,17 @@ class LiftParameters(StudyParameters):
     travel: Optional[float] = quantity(
         None, "d", "how far the body is dragged; auto: 40 D, or until 2 D from its wake", gt=0
     )
-    fields: bool = quantity(True, "-", "average velocity, fraction and stress around the body")
-    field_spacing: float = quantity(1.0, "d", "distance of the fields' points; it must divide 1 d", gt=0, le=1)
-    frames: int = quantity(1, "-", "pictures of the bed, evenly in time, the last at the end", ge=1, le=9999)
+    fields: bool = quantity(True, "-", "average velocity, fraction and stress around the body", watches=True)
+    field_spacing: float = quantity(
+        1.0, "d", "distance of the fields' points; it must divide 1 d", gt=0, le=1, watches=True
+    )
+    frames: int = quantity(
+        1, "-", "pictures of the bed, evenly in time, the last at the end", ge=1, le=9999, watches=True
+    )
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as at rest", gt=0)
-    largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    largest_overlap: float = quantity(
+        0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+    )
     threads: int = quantity(0, "-", "threads of GrainLoop; 0: what pays", ge=0, le=256, identity=False)
 
     @property

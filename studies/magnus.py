@@ -88,12 +88,19 @@ class MagnusParameters(intruder.BodyParameters):
     bead_diameter: float = quantity(0.5, "d", "diameter of the beads of a shape other than the disk", gt=0)
     polydispersity: float = quantity(0.1, "-", "grains' diameters are uniform within this of d", ge=0, lt=0.9)
     wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
-    fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing")
-    field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1)
+    fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing", watches=True)
+    field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1, watches=True)
     frames: int = quantity(
-        1, "-", "pictures of the channel that are kept, evenly in time, the last at the end", ge=1, le=9999
+        1,
+        "-",
+        "pictures of the channel that are kept, evenly in time, the last at the end",
+        ge=1,
+        le=9999,
+        watches=True,
     )
-    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    largest_overlap: float = quantity(
+        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+    )
 
     @property
     def way(self):

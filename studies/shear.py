@@ -74,8 +74,10 @@ class ShearParameters(StudyParameters):
     grains: int = quantity(600, "-", "number of disks", ge=FEWEST_GRAINS, le=1_000_000, lever=Lever(4000, "lower"))
     friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
     restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
-    stiffness: float = quantity(2e5, "m g/d", "k_n of the spring; k_t is 2/7 of it", gt=0)
-    largest_overlap: float = quantity(0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    stiffness: float = quantity(2e5, "m g/d", "k_n of the spring; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
+    largest_overlap: float = quantity(
+        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+    )
 
     @property
     def rate(self):

@@ -96,19 +96,25 @@ class WiggleParameters(intruder.BodyParameters):
     )
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0, lever=Lever(1000, "lower"))
     frames: int = quantity(
-        10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999
+        10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999, watches=True
     )
     rest: float = quantity(
         1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0, lever=Lever(1e-4, "higher")
     )
-    largest_overlap: float = quantity(0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1)
+    largest_overlap: float = quantity(
+        0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+    )
     orientation_deg: float = quantity(
         0.0, "degrees", "the shape turned counter-clockwise about its centroid", ge=-360, le=360
     )
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
-    bead_spacing: float = quantity(1.0, "bead diameters", "longest step between beads along the outline", gt=0, le=1)
+    bead_spacing: float = quantity(
+        1.0, "bead diameters", "longest step between beads along the outline", gt=0, le=1, lever=Lever(0.5, "higher")
+    )
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
-    fields: bool = quantity(False, "-", "also average area fraction, velocity and pressure around the body by phase")
+    fields: bool = quantity(
+        False, "-", "also average area fraction, velocity and pressure around the body by phase", watches=True
+    )
     lid_pressure: Optional[float] = quantity(
         None,
         "rho d g",

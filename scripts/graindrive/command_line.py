@@ -1,25 +1,26 @@
 """From `key=value` arguments and YADE's batch tables to checked parameters, or to one line that says what is wrong."""
 
-import difflib
-import math
 import os
 import sys
+from pathlib import Path
 
 from pydantic import ValidationError
 
 from .batch_table import evaluated, read_row
 from .errors import UsageError, one_line
+from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
 from .parameters import allowed, choices, digest, plain_type
+from .tuning import choice
 
 HELP_WORDS = ("help", "--help", "-h", "-help")
-SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false": False, "no": False, "off": False}
 
 
 def parameters_or_exit(study, arguments, environment=None):
     """Return the parameters of a `Study` for `key=value` arguments (without the script's name), or end the program.
 
-    What the user gives on the command line or in a row of YADE's batch table wins over the values of the scale, and these
-    over a preset study's own. `help` prints what the study knows and exits 0; a bad argument is one line on stderr, exit 2.
+    What the user gives on the command line or in a row of YADE's batch table wins over what a file of parameters holds, an
+    argument @FILE; these over the levers that `accuracy` chooses, these over the values of the scale, and these over a preset
+    study's own. `help` prints what the study knows and exits 0; a bad argument is one line on stderr, exit 2.
     """
     if any(argument in HELP_WORDS for argument in arguments):
         print(help_text(study))
@@ -34,14 +35,10 @@ def parameters_or_exit(study, arguments, environment=None):
 def parse(study, arguments, environment=None):
     """Return the parameters of a `Study` for these arguments; raises UsageError at the first that is wrong."""
     cls = study.parameters
+    files = [argument[1:] for argument in arguments if argument.startswith("@")]
     given = from_batch_row(cls, os.environ if environment is None else environment)
-    for argument in arguments:
-        key, text = split(cls, argument)
-        if key in given:
-            raise UsageError(
-                f"{key} is given twice: {key}={one_line(given[key])} and {argument_text(key, text)}; keep one"
-            )
-        given[key] = text
+    given = added(cls, given, [argument for argument in arguments if not argument.startswith("@")])
+    given = {**added(cls, {}, [a for file in files for a in arguments_of(Path(file), cls)]), **given}
     values = {key: convert(cls.__fields__[key], text) for key, text in given.items()}
     base = dict(study.defaults)
     scale = values.get("scale", base.get("scale", cls.__fields__["scale"].default))
@@ -50,11 +47,39 @@ def parse(study, arguments, environment=None):
             f"{argument_text('scale', scale)} is not known to {study.name}; allowed: {', '.join(study.presets)}"
         )
     merged = {**base, **study.presets[scale], **values, "scale": scale}
+    taken = choice_by_accuracy(study, merged, values, given) if merged.get("accuracy") else None
+    merged.update(taken.levers if taken else {})
     if not merged.get("out"):
         merged["out"] = folder_name(
             study.name, scale, {k: v for k, v in given.items() if k not in ("scale", "out")}, cls
         )
-    return build(cls, merged, given)
+    p = build(cls, merged, given)
+    p._choice = taken
+    return p
+
+
+def added(cls, given, arguments):
+    """Return {key: text} of what is given and of further `key=value` arguments; UsageError for a key that is there already."""
+    given = dict(given)
+    for argument in arguments:
+        key, text = split(cls, argument)
+        if key in given:
+            raise UsageError(
+                f"{key} is given twice: {key}={one_line(given[key])} and {argument_text(key, text)}; keep one"
+            )
+        given[key] = text
+    return given
+
+
+def choice_by_accuracy(study, merged, values, given):
+    """Return the `Choice` of levers for the key accuracy; levers that the user gave are not in it."""
+    kept = {key: value for key, value in values.items() if key in study.levers}
+    usual = {**merged, "out": merged.get("out") or "."}
+
+    def made(levers):
+        return build(study.parameters, {**usual, **levers, **kept}, given)
+
+    return choice.chosen(study, merged["accuracy"], made, kept)
 
 
 def from_batch_row(cls, environment):
@@ -80,70 +105,6 @@ def split(cls, argument):
     return key, text.strip()
 
 
-def require_key(cls, key):
-    """Raise UsageError with the nearest right spelling unless `key` is one of the class."""
-    if key not in cls.__fields__:
-        hint = nearest(str(key).lstrip("-").replace("-", "_"), cls.__fields__, "did you mean ", "? ")
-        raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
-
-
-def nearest(word, words, before, after):
-    """Return the one of `words` closest to `word`, between `before` and `after`, or nothing if none is close."""
-    found = difflib.get_close_matches(str(word).lower(), list(map(str, words)), n=1, cutoff=0.5)
-    return f"{before}{found[0]}{after}" if found else ""
-
-
-def argument_text(key, value):
-    """Return the argument as the user typed it, on one line."""
-    return f"{key}={one_line(value)}"
-
-
-def refuse(field, text):
-    """Raise the UsageError for a value that `field` does not take."""
-    hint = nearest(text, choices(field), " (did you mean ", "?)")
-    raise UsageError(
-        f"{argument_text(field.name, text)} is not allowed: {field.name} is {allowed(field)}{hint}"
-        f" - {field.field_info.description}"
-    )
-
-
-def convert(field, text):
-    """Return the text of one value as the type that `field` declares; raises UsageError."""
-    if field.allow_none and text.lower() == "auto":
-        return None
-    kind = plain_type(field)
-    try:
-        if kind is bool:
-            return SWITCH[text.lower()]
-        if kind is int:
-            return whole(text)
-        if kind is float:
-            return finite(float(text))
-    except (ValueError, KeyError, OverflowError):
-        refuse(field, text)
-    if kind is str and any(not c.isprintable() for c in text):
-        refuse(field, text)
-    return text
-
-
-def finite(number):
-    """Return `number`; raises ValueError if it is infinite or not a number."""
-    if not math.isfinite(number):
-        raise ValueError("not finite")
-    return number
-
-
-def whole(text):
-    """Return the integer that `text` writes, also as 1e5."""
-    try:
-        return int(text)
-    except ValueError:
-        number = float(text)
-        if not number.is_integer():
-            raise ValueError("not whole") from None
-        return int(number)
-
-
 def build(cls, merged, given):
     """Return `cls(**merged)`; raises UsageError for the first value out of range, or for a condition between values."""
     try:
@@ -159,7 +120,9 @@ def build(cls, merged, given):
 
 def folder_name(study, scale, given, cls):
     """Return the default run folder: the study, its scale and the keys given."""
-    kept = {k: v for k, v in given.items() if cls.__fields__[k].field_info.extra.get("identity", True)}
+    kept = {
+        k: v for k, v in given.items() if k == "accuracy" or cls.__fields__[k].field_info.extra.get("identity", True)
+    }
     name = "-".join([study, scale] + [f"{key}_{value}" for key, value in sorted(kept.items())])
     name = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in name)
     return name if len(name) <= 120 else f"{name[:107]}-{digest(kept)}"
@@ -196,10 +159,19 @@ def levers_in_words(study):
     """Return the paragraph of help on the parameters that trade accuracy for speed."""
     unit = study.parameters.unit
     rows = [
-        (f"  {key}", f"{lever.reference:g} {unit(key)}".removesuffix(" -"), lever.cheaper)
+        (
+            f"  {key}",
+            f"{shown_number(lever.reference)} {unit(key)}".removesuffix(" -"),
+            lever.cheaper if isinstance(lever.cheaper, str) else ", ".join(lever.cheaper),
+        )
         for key, lever in study.levers.items()
     ]
     return aligned([("levers", "most accurate", "costs less when"), *rows]) if rows else ""
+
+
+def shown_number(value):
+    """Return a number without needless digits, a word as it is."""
+    return f"{value:g}" if isinstance(value, (int, float)) else value
 
 
 def observables_in_words(study):

@@ -54,7 +54,11 @@ def carry_out(study, p):
     """Run the `Study` in its run folder, with stop signals handled."""
     units = {observable.name: observable.unit for observable in study.observables}
     kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
+    if p.choice:
+        print(f"{study.name}: accuracy={p.accuracy}: {p.choice.words}", file=sys.stderr)
     with signals.handled(), RunFolder(p, study=study.name, **kept) as folder:
+        if p.choice:
+            folder.note(**p.choice.facts())
         study.run(p, folder)
     print(f"{study.name}: done, see {folder.out}", file=sys.stderr)
 

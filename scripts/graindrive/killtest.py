@@ -36,7 +36,7 @@ STUDIES = {  # at smoke size, with what shows most
     "lift": "scale=smoke travel=12 frames=4 fields=1".split(),
 }
 INTERVALS = (0.0, 0.1, 1.0)  # s between checkpoints
-TIMED = ("wall_s", "particle_steps_per_second", "continuum_core_seconds")
+TIMED = ("wall_s", "core_seconds", "peak_memory", "particle_steps_per_second", "continuum_core_seconds")
 AT_WORK = ("going on from step", "starting anew")  # what a run with resume=1 says when its folder is made
 COUNTED = ("lost rows", "differing bits", "tracebacks", "wedged")
 

@@ -3,9 +3,9 @@
 import hashlib
 import json
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Union
 
-from pydantic import BaseModel, Field, validator
+from pydantic import BaseModel, Field, PrivateAttr, validator
 
 EXPORTS = (
     "vtk",
@@ -20,29 +20,40 @@ LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from 
 
 @dataclass(frozen=True)
 class Lever:
-    """A number among the parameters that trades accuracy for speed.
+    """A parameter that trades accuracy for speed.
 
-    At `reference` a run is as accurate as the study goes; it costs less in the direction `cheaper`, "higher" or "lower".
+    At `reference` a run is as accurate as the study goes. A number costs less in the direction `cheaper`, "higher" or
+    "lower", and is tried in steps of `factor`; of a choice between words `cheaper` is the tuple of the words that cost less,
+    the most accurate first.
     """
 
-    reference: float
-    cheaper: str
+    reference: Union[float, str]
+    cheaper: Union[str, tuple]
+    factor: float = 2.0
 
     def __post_init__(self):
-        if self.cheaper not in ("higher", "lower"):
+        words = isinstance(self.reference, str)
+        if words and not (isinstance(self.cheaper, tuple) and self.cheaper):
+            raise ValueError(
+                f"cheaper must be a tuple of words, as reference={self.reference!r} is one; got {self.cheaper!r}"
+            )
+        if not words and self.cheaper not in ("higher", "lower"):
             raise ValueError(f"cheaper must be 'higher' or 'lower', got {self.cheaper!r}")
+        if not self.factor > 1:
+            raise ValueError(f"factor must be above 1, got {self.factor:g}")
 
 
-def quantity(default, unit, meaning, *, identity=True, lever=None, **limits):
+def quantity(default, unit, meaning, *, identity=True, lever=None, watches=False, **limits):
     """Declare one parameter of a study.
 
     `unit` is text ("d", "sqrt(d/g)", "-" for a pure number), `meaning` one line for the help table, `limits` any of
     gt, ge, lt, le. `identity=False` marks what changes how a run is made but not its result: such keys
-    take no part in comparing runs. `lever` is the parameter's `Lever`, if it is one.
+    take no part in comparing runs. `lever` is the parameter's `Lever`, if it is one. `watches=True` marks what only says what a
+    run keeps or when it gives up (frames, fields, guards): it does not change what happens.
     """
     if set(limits) - set(LIMITS):
         raise TypeError(f"limits are {', '.join(LIMITS)}, got {', '.join(limits)}")
-    return Field(default, description=meaning, unit=unit, identity=identity, lever=lever, **limits)
+    return Field(default, description=meaning, unit=unit, identity=identity, lever=lever, watches=watches, **limits)
 
 
 class StudyParameters(BaseModel):
@@ -53,6 +64,8 @@ class StudyParameters(BaseModel):
     its value from the others, in `auto_values`.
     """
 
+    _choice = PrivateAttr(None)  # what `accuracy` took, a `tuning.choice.Choice`
+
     unit_system: ClassVar[str] = ""  # of postproc.quantities, SI or GRAIN; empty where a study has units of its own
 
     scale: Literal["smoke", "demo", "paper"] = quantity(
@@ -60,8 +73,16 @@ class StudyParameters(BaseModel):
     )
     seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
     loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own as the reference")
-    precision: Literal["double", "single"] = quantity("double", "-", "number type of contact forces in GrainLoop")
+    precision: Literal["double", "single"] = quantity(
+        "double", "-", "number type of contact forces in GrainLoop", lever=Lever("double", ("single",))
+    )
     dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0, lever=Lever(1.0, "higher"))
+    accuracy: str = quantity(
+        "",
+        "-",
+        "take the cheapest measured levers with an error below this: 5%, or of another observable NAME:5%",
+        identity=False,
+    )
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
     resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
     checkpoint_seconds: float = quantity(
@@ -108,6 +129,16 @@ class StudyParameters(BaseModel):
         """Return {key: `Lever`} of the parameters that trade accuracy for speed."""
         found = {key: field.field_info.extra.get("lever") for key, field in cls.__fields__.items()}
         return {key: lever for key, lever in found.items() if lever is not None}
+
+    @property
+    def choice(self):
+        """What the key accuracy took, a `tuning.choice.Choice`; None without that key."""
+        return self._choice
+
+    @classmethod
+    def watching(cls):
+        """Return the keys that only say what a run keeps or when it gives up."""
+        return {key for key, field in cls.__fields__.items() if field.field_info.extra.get("watches")}
 
     def auto_values(self):
         """Return {key: the value that is taken} of the keys that are `auto`; a study that has such keys overrides this."""

@@ -4,6 +4,7 @@ What each state of it on disk means to the next call stands in `run_remains.py`.
 """
 
 import math
+import resource
 import sys
 import time
 
@@ -14,7 +15,15 @@ from .errors import Interrupted, UsageError, is_full, one_line
 from .postproc import quantities
 from .provenance import provenance
 
-CONTRACT = ("particle_steps_per_second", "steps", "n_grains", "wall_s", "dt_over_critical")
+CONTRACT = (
+    "particle_steps_per_second",
+    "steps",
+    "n_grains",
+    "wall_s",
+    "core_seconds",
+    "peak_memory",
+    "dt_over_critical",
+)
 
 
 class RunFolder:
@@ -37,6 +46,7 @@ class RunFolder:
         self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
         self.series, self.frames, self.items, self.lock, self.made = None, 0, {}, None, []
         self.resumed, self.start, self.wall_before = None, time.monotonic(), 0.0
+        self.start_processor, self.processor_before = time.process_time(), 0.0
 
     def declare_series(self, **units):
         """Name the time series and their units, once, before the first `append`."""
@@ -98,12 +108,23 @@ class RunFolder:
         """Wall time of the run so far [s], of a resumed one with what led to the checkpoint from which it went on."""
         return self.wall_before + time.monotonic() - self.start
 
+    @property
+    def core_seconds(self):
+        """Processor time of all threads of the run so far [s], of a resumed one with what led to its checkpoint."""
+        return self.processor_before + time.process_time() - self.start_processor
+
+    def note_cost(self):
+        """Put into the provenance what the run has cost: wall time, processor time, and the largest memory of this process."""
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6  # Linux counts KiB
+        self.note(wall_s=self.wall_s, core_seconds=self.core_seconds, peak_memory=memory)
+
     def checkpoint(self, save, step, **facts):
         """Have `save(folder)` write all that is needed to go on from `step`; it replaces the older checkpoint.
 
         `facts` are plain values; with resume=1 they come back in `resumed`, with the checkpoint's `folder` and `step`.
         """
-        facts = {**facts, "step": step, "frames": self.frames, "items": self.items, "wall_s": self.wall_s}
+        facts = {**facts, "step": step, "frames": self.frames, "items": self.items}
+        facts.update(wall_s=self.wall_s, core_seconds=self.core_seconds)
         facts.update(digest=self.parameters.digest(), code_version=self.provenance["code_version"])
         with signals.deferred():
             if self.series is not None:
@@ -153,6 +174,7 @@ class RunFolder:
             self.say("no interrupted run of these parameters to resume; starting anew")
             return
         self.frames, self.wall_before = self.resumed["frames"], self.resumed["wall_s"]
+        self.processor_before = self.resumed.get("core_seconds", 0.0)
         self.items = dict(self.resumed["items"])
         self.say(f"going on from step {self.resumed['step']} of {self.resumed['remains']}")
         before, now = self.resumed["code_version"], self.provenance["code_version"]
@@ -190,7 +212,7 @@ class RunFolder:
 
     def complete(self):
         """Finish all files and give the folder its right name; from the moment that `run.h5` is whole nothing can be lost."""
-        self.provenance["wall_s"] = self.wall_s
+        self.note_cost()
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
         own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
@@ -209,7 +231,7 @@ class RunFolder:
             self.remove_part()
             return
         try:
-            self.provenance["wall_s"] = self.wall_s
+            self.note_cost()
             self.finish_data(ending)
         except (OSError, RuntimeError) as error:  # a full disk: what stands there now is all that there is
             self.say(f"the data so far are in {self.path}, unfinished: {one_line(error, 200)}")

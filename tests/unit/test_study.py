@@ -49,10 +49,18 @@ def test_a_lever_has_a_direction():
         Lever(1, "faster")
 
 
+def test_a_lever_of_words_names_the_cheaper_ones():
+    with pytest.raises(ValueError, match="cheaper must be a tuple of words"):
+        Lever("double", "lower")
+    with pytest.raises(ValueError, match="factor must be above 1"):
+        Lever(1, "higher", factor=1)
+
+
 def test_a_study_knows_its_headline_and_its_levers():
     study = made(observables=(SPEED, FORCE))
     assert study.headline is FORCE and made().headline is None
-    assert study.levers == {"dt_factor": Lever(1.0, "higher"), "depth": Lever(10, "lower")}
+    words = Lever("double", ("single",))
+    assert study.levers == {"precision": words, "dt_factor": Lever(1.0, "higher"), "depth": Lever(10, "lower")}
 
 
 def test_a_preset_gives_way_to_the_scale_and_to_the_user():

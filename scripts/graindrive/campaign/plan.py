@@ -16,11 +16,12 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..command_line import nearest, parse, refuse, require_key
+from ..command_line import parse
 from ..errors import UsageError, one_line
-from ..parameters import plain_type
+from ..parameter_values import argument, nearest
+from ..plain_yaml import shortened
 from ..study import house, loaded
-from .plan_file import read_plan_file, shortened
+from .plan_file import read_plan_file
 
 OWN_KEYS = {  # of a study, which a campaign sets itself
     "out": "the campaign names its run folders",
@@ -176,41 +177,6 @@ def planned_run(place, values, study):
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
     return PlannedRun(run_name(p, study), arguments, p)
-
-
-def argument(parameters, key, value):
-    """Return a value of the file as the study's command line takes it; UsageError where it is of another kind than its key."""
-    require_key(parameters, key)
-    field = parameters.__fields__[key]
-    if isinstance(value, (dict, list)):
-        raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {shortened(value)}")
-    if value is None or (field.allow_none and value == "auto"):
-        return f"{key}=auto"
-    if not is_of_kind(plain_type(field), value):
-        refuse(field, f"'{value}'" if isinstance(value, str) and is_number(value) else as_written(value))
-    return f"{key}={int(value) if isinstance(value, bool) else value}"
-
-
-def is_of_kind(kind, value):
-    """True if a value of the file is what a key of that kind takes: bool, int, float, str, or None for a choice of words."""
-    if kind is bool:
-        return isinstance(value, (bool, int)) and value in (0, 1)
-    if kind in (int, float):
-        return isinstance(value, (int, float)) and not isinstance(value, bool)
-    return isinstance(value, str)
-
-
-def is_number(text):
-    """True for text that would be a number without its quotes."""
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
-
-def as_written(value):
-    """Return a value as it stands in the file."""
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def run_name(p, study):

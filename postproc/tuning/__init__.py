@@ -1,0 +1,1 @@
+"""What a tuning found, as figure, table and plain sentences."""

@@ -1,0 +1,246 @@
+"""The command `scripts/tune`: measure within a budget what a study's levers change and cost, and choose among them."""
+
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+from .. import output, signals
+from ..campaign import execution
+from ..command_line import split
+from ..errors import UsageError, one_line
+from ..headless import guarded
+from ..parameter_values import convert, nearest
+from ..postproc.tuning.report import write_report
+from ..provenance import code_version, cpu_model
+from ..study import duration, house, loaded
+from . import book, choice, ladder
+from .search import MOST_SEEDS, Search
+from .trials import Trials
+from .words import in_words, shown
+
+NAME = "tune"
+USUAL = dict(budget="30min", target="5%", vary="", seeds=str(MOST_SEEDS), cores=str(os.cpu_count()), out="")
+UNITS = dict(s=1, min=60, h=3600)
+USAGE = """usage: scripts/tune STUDY [key=value …] [budget=30min] [target=5%] [vary=KEY,…] [seeds=6]
+                         [cores=N] [out=DIR] [-n] [--launch]
+
+Starts from the study's most accurate levers, or those that are given, and varies each alone towards cheaper values, then
+the good ones together. Keys that are no levers may have several values, as phi=0.352,0.6: each is a scene.
+budget: processor time that the runs may take (90s, 30min, 2h)      target: relative error of the headline, or NAME:5%
+vary: the levers to vary; without it all                             seeds: repeats of a setting at most
+-n: only say what would be varied, and the reference's cost         --launch: then run the study with what was chosen"""
+
+
+def main(arguments):
+    """Carry out what the command line asks for; return the exit code."""
+    if not arguments or {"help", "-h", "--help"} & set(arguments):
+        print(USAGE)
+        return 0 if arguments else UsageError.exit_code
+    outcome = []
+    code = guarded(lambda: outcome.append(tune(arguments)), NAME)
+    return code or outcome[0]
+
+
+def tune(arguments):
+    """Measure, report, and with --launch run; return the exit code."""
+    flags = {a for a in arguments if a.startswith("-")}
+    if flags - {"-n", "--launch"}:
+        raise UsageError(f"there is no option {one_line(min(flags - {'-n', '--launch'}))}; there are -n and --launch")
+    name, *words = [a for a in arguments if a not in flags]
+    file = study_file(name)
+    study = loaded(file)
+    options, keys = parted(study, words)
+    target = choice.asked_of(study, options["target"])
+    scenes, given = scenes_of(study, keys)
+    reference = ladder.reference_of(study, given)
+    for scene in scenes:
+        ladder.parameters_of(study, {**scene, **reference})
+    vary = varied(study, options["vary"])
+    ladders = {key: ladder.rungs(study, {**scenes[0], **reference}, key) for key in vary}
+    out = Path(options["out"] or f"tune-{study.name}").absolute()
+    trials = Trials(study, file, out, scenes, reference, Path.cwd())
+    found = {key: values for key, (values, _) in ladders.items()}
+    search = Search(trials, found, target.observable, target.error, choice.CONFIDENCE, whole(options, "seeds"))
+    tell_plan(search, ladders, options)
+    if "-n" in flags:
+        return 0
+    with execution.nothing_in_the_way(out), signals.handled():
+        carry_out(search, seconds_of(options["budget"]), whole(options, "cores"))
+        if not trials.of(()):
+            raise UsageError(
+                f"no run of the reference ended: {next(iter(trials.failed.values()), 'the budget is too small for one')}"
+            )
+        command = shlex.join(["scripts/tune", name, *words])
+        measured = measured_book(search, command)
+        book.write(out / "measured.json", measured)
+        tuned = write_parameters(out / "tuned.yaml", search)
+        report = write_report(out, search, measured)
+    print(
+        f"{NAME}: see {report}; {tuned.name} holds the levers chosen, for scripts/run {name} @{tuned}", file=sys.stderr
+    )
+    return launch(file, scenes[0], tuned, study) if "--launch" in flags else 0
+
+
+def study_file(name):
+    """Return the file of a study of this checkout, or the .py file that is named; UsageError for neither."""
+    if name.endswith(".py") and Path(name).is_file():
+        return Path(name).resolve()
+    known = house()
+    if name not in known:
+        hint = nearest(name, known, "did you mean ", "? ")
+        raise UsageError(f"there is no study '{one_line(name)}'; {hint}there are: {' '.join(known)}")
+    return known[name]
+
+
+def parted(study, words):
+    """Return (options of the tuning, {key: text} of the study) from `key=value` words."""
+    options, keys = dict(USUAL), {}
+    for word in words:
+        key, sign, text = word.partition("=")
+        if sign and key in USUAL:
+            options[key] = text.strip()
+            continue
+        key, text = split(study.parameters, word)
+        if key in keys:
+            raise UsageError(f"{key} is given twice; keep one")
+        keys[key] = text
+    return options, keys
+
+
+def scenes_of(study, keys):
+    """Return (scenes: a dict of values for each combination of the values given, {lever: value given})."""
+    scenes, given = [{}], {}
+    for key, text in keys.items():
+        field = study.parameters.__fields__[key]
+        if key == "seed":
+            raise UsageError(
+                f"seed={one_line(text)}: a tuning takes seeds 1, 2, … itself; leave it out, seeds=N bounds them"
+            )
+        if key in study.levers:
+            given[key] = convert(field, text)
+            continue
+        values = [convert(field, part) for part in text.split(",")] if field.type_ is not str else [text]
+        scenes = [{**scene, key: value} for scene in scenes for value in values]
+    return scenes, given
+
+
+def varied(study, text):
+    """Return the levers to vary; UsageError for a key that is none."""
+    names = [name.strip() for name in text.split(",") if name.strip()] or list(study.levers)
+    for name in names:
+        if name not in study.levers:
+            raise UsageError(
+                f"vary={one_line(text)}: {one_line(name)} is no lever of {study.name}; there are: {' '.join(study.levers)}"
+            )
+    return names
+
+
+def seconds_of(text):
+    """Return the seconds of a budget as 90s, 30min, 2h; UsageError with the rule."""
+    unit = next((unit for unit in sorted(UNITS, key=len, reverse=True) if text.endswith(unit)), None)
+    try:
+        value = float(text.removesuffix(unit)) * UNITS[unit]
+    except (TypeError, ValueError):
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise UsageError(f"budget={one_line(text)} must be a time as 90s, 30min or 2h")
+    return value
+
+
+def whole(options, key):
+    """Return an option that counts; UsageError unless it is a whole number of at least 1 (of seeds 2)."""
+    least = 2 if key == "seeds" else 1
+    if not options[key].isdecimal() or int(options[key]) < least:
+        raise UsageError(f"{key}={one_line(options[key])} must be a whole number of at least {least}")
+    return int(options[key])
+
+
+def tell_plan(search, ladders, options):
+    """Say what is varied from where, and what the reference costs."""
+    trials = search.trials
+    print(
+        f"{NAME}: reference {in_words(sorted(trials.reference.items()))}; {len(trials.scenes)} scenes", file=sys.stderr
+    )
+    for key, (values, end) in ladders.items():
+        tried = ", ".join(shown(value) for value in values) or "nothing to try"
+        print(f"{NAME}: {key}: {tried}{f' ({end})' if end else ''}", file=sys.stderr)
+    if trials.study.cost:
+        start = search.repeats((), 2)
+        seconds = sum(trials.expected_seconds(trial) for trial in start)
+        print(
+            f"{NAME}: {len(start)} runs of the reference: about {duration(seconds)} of the budget, {options['budget']}",
+            file=sys.stderr,
+        )
+
+
+def carry_out(search, budget, cores):
+    """Make trials until the levers are settled or the budget is spent."""
+    trials = search.trials
+    wanted = search.next_trials(budget)
+    if trials.study.cost and (needed := sum(map(trials.expected_seconds, wanted))) > budget:
+        raise UsageError(
+            f"the reference alone needs about {duration(needed)} of processor time, more than the budget of {duration(budget)};"
+            " raise budget, or give levers nearer to what you can afford as the reference"
+        )
+    while wanted:
+        trials.make(wanted, cores)
+        for trial in wanted:
+            if trial in trials.failed:
+                print(f"{NAME}: {in_words(trial.setting)} fails: {trials.failed[trial]}", file=sys.stderr)
+        print(
+            f"{NAME}: {len(trials.outcomes)} runs, {duration(trials.spent)} of {duration(budget)} spent",
+            file=sys.stderr,
+        )
+        if not trials.of(()):
+            return
+        wanted = search.next_trials(budget - trials.spent)
+
+
+def measured_book(search, command):
+    """Return the `Book` of what the trials gave."""
+    trials = search.trials
+    scenes = [book.scene_of(trials.planned(t).parameters, trials.reference) for t in reference_trials(trials)]
+    same, cover = book.cover_of(scenes)
+    settings = []
+    for setting in trials.settings:
+        runs = trials.of(setting).values()
+        effects = {o.name: trials.effect(setting, o.name) for o in trials.study.observables}
+        settings.append(
+            book.Setting(
+                dict(setting),
+                {name: effect for name, effect in effects.items() if effect.runs},
+                trials.cost_factor(setting),
+                trials.cost(setting),
+                max(outcome.memory for outcome in runs),
+                len(runs),
+            )
+        )
+    about = (trials.study.family, command, code_version(), cpu_model())
+    return book.Book(*about, trials.reference, same, cover, tuple(settings))
+
+
+def reference_trials(trials):
+    """Return one trial of the reference in each scene."""
+    return [next(t for t in trials.asked if t.setting == () and t.scene == k) for k in range(len(trials.scenes))]
+
+
+def write_parameters(path, search):
+    """Write the levers of the chosen setting as a file of parameters; return its path."""
+    levers = {**search.trials.reference, **dict(search.chosen())}
+    lines = [f"{key}: {shown(value)}" for key, value in sorted(levers.items())]
+    text = "# Levers that scripts/tune chose; a study takes this file as @FILE.\n" + "\n".join(lines) + "\n"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def launch(file, scene, tuned, study):
+    """Run the study with the first scene's keys and the chosen levers; return its exit code."""
+    keys = [f"{key}={int(v) if isinstance(v, bool) else v}" for key, v in scene.items()]
+    return subprocess.call([*execution.program(study), str(file), *keys, f"@{tuned}"])
+
+
+if __name__ == "__main__":
+    output.forgive()
+    sys.exit(main(sys.argv[1:]))
