@@ -133,7 +133,7 @@ class DrumParameters(StudyParameters):
         "continuum: residual of the pressure at which its solver ends",
         gt=0,
         lt=1,
-        lever=Lever(1e-8, "higher"),
+        lever=Lever(1e-8, "higher", factor=10),
     )
     pressure_solver: str = quantity("", "-", "continuum: name of the pressure's solver; empty: the fastest")
 
