@@ -3,6 +3,7 @@
 from ..command_line import parse
 from ..errors import UsageError, one_line
 from ..parameter_values import argument
+from ..parameters import plain_type
 
 MOST_RUNGS = 5
 
@@ -25,7 +26,7 @@ def rungs(study, values, key):
     Numbers go by the lever's factor, at most `MOST_RUNGS` times; a value that the study refuses ends the ladder.
     """
     lever, found = study.levers[key], []
-    for value in steps(lever, values[key], study.parameters.__fields__[key].outer_type_ is int):
+    for value in steps(lever, values[key], plain_type(study.parameters.__fields__[key]) is int):
         try:
             parameters_of(study, {**values, key: value})
         except UsageError as error:
