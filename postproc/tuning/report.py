@@ -1,4 +1,4 @@
-"""The report of a tuning: `tune.md` with sentences and a table, `table.csv`, and the figure of error against cost."""
+"""The report of a tuning: `report.md` with sentences and a table, `table.csv`, and the figure of error against cost."""
 
 import math
 
@@ -14,13 +14,14 @@ ERROR_FLOOR = 1e-3  # of the figure: an error of 0 has no place on a logarithmic
 
 
 def write_report(folder, search, book):
-    """Write table, figure and `tune.md` of a `Search` whose runs are there, and its `Book`; return the last written."""
+    """Write table, figure and `report.md` of a `Search` whose runs are there, and its `Book`; return the last written."""
     rows = table_of(search)
     write_text(folder / "table.csv", rows.to_csv(index=False))
     with figures.plt.rc_context(figures.STYLE):
-        figures.save_as(drawn(search, rows), folder, "tune")
-    write_text(folder / "tune.md", "\n\n".join(parts(search, book, rows)) + "\n")
-    return folder / "tune.md"
+        (folder / "figures").mkdir(exist_ok=True)
+        figures.save_as(drawn(search, rows), folder / "figures", f"{folder.name}-levers")
+    write_text(folder / "report.md", "\n\n".join(parts(search, book, rows)) + "\n")
+    return folder / "report.md"
 
 
 def table_of(search):
@@ -139,13 +140,13 @@ def parts(search, book, rows):
         sentence(search, row, setting) for row, setting in zip(rows.to_dict("records"), trials.settings) if setting
     ]
     return [
-        f"# Levers of {trials.study.name}",
+        f"## Levers of {trials.study.name}: what each changes and costs (`{trials.folder.name}`)",
         f"`{book.command}`; code {book.code_version}, on {book.cpu}; {len(trials.outcomes)} runs,"
         f" {trials.spent:.0f} core-seconds."
         f" Scenes: {book.in_words()}. Reference: {in_words(sorted(trials.reference.items()))}.",
         f"{reference_sentence(search, rows)} Chosen: {in_words(best)}, at"
         f" {share(trials.cost(best) / trials.cost(()))} of its cost.",
-        "![error against cost](tune.png)",
+        f"![error against cost](figures/{trials.folder.name}-levers.png)",
         "Points: bias with its 90 % interval, from runs of the same scene and seed. Line: the size below which one more run's"
         " difference from the reference lies in nine of ten cases, for the best setting at each cost.",
         "\n".join(f"- {line}" for line in lines) or "No lever could be varied.",

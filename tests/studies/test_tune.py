@@ -78,9 +78,9 @@ def test_a_tuning_leaves_figure_table_sentences_book_and_parameters(place):
         "good",
         "saves nothing",
     )  # by the processor's time, which is no test's matter
-    text = (out / "tune.md").read_text()
+    text = (out / "report.md").read_text()
     assert "- dt_factor=2 changes left by -0.5" in text
-    assert matplotlib.image.imread(out / "tune.png").std() > 0
+    assert matplotlib.image.imread(out / "figures" / "tuned-levers.png").std() > 0
     made = book.read(out / "measured.json")
     assert made.cover["rate"] == [1.0, 1.1] and made.same["noise"] == 1e-4 and made.study == "decay"
     chosen = float(re.search(r"dt_factor: ([0-9.]+)", (out / "tuned.yaml").read_text())[1])
@@ -136,10 +136,10 @@ def test_a_tuning_that_was_killed_makes_no_run_again(place):
 def test_what_cannot_be_tuned_is_refused_in_one_line(place, arguments, words):
     code, said = tuned(place, *arguments)
     assert code == 2 and words in said and "Traceback" not in said
-    assert not (place / "tune-decay").exists()
+    assert not (place / "tune_decay").exists()
 
 
 def test_a_dry_run_says_what_would_be_varied_and_runs_nothing(place):
     code, words = tuned(place, "-n")
     assert code == 0 and "dt_factor: 2, 4, 8, 16, 32" in words and "2 runs of the reference" in words
-    assert not (place / "tune-decay").exists()
+    assert not (place / "tune_decay").exists()

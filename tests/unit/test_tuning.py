@@ -11,7 +11,8 @@ from graindrive.errors import UsageError
 from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.study import Cost, Observable, Study
 from graindrive.tuning import __main__ as command
-from graindrive.tuning import book, ladder
+from graindrive.postproc.tuning import held_out as held_out_report
+from graindrive.tuning import book, held_out, ladder
 from graindrive.tuning.effects import NOTHING, Effect, of_reference, pooled
 from graindrive.tuning.search import BAD, FAILED, GOOD, SAVES_NOTHING, UNDECIDED, Search
 from graindrive.tuning.trials import Outcome, Trials
@@ -197,7 +198,15 @@ def made_book(tmp_path, **changes):
         for levers, error in ((dict(), 0.01), (dict(cells=16), 0.04), (dict(cells=8), 0.2), (dict(time=4.0), 0.03))
     )
     made = book.Book(
-        "made_up", "scripts/tune made_up", "1", "a processor", reference, same, dict(speed=[0.5, 2.0]), settings
+        "made_up",
+        "scripts/tune made_up",
+        "1",
+        "a processor",
+        reference,
+        same,
+        dict(speed=[0.5, 2.0]),
+        [{"speed": 0.5}, {"speed": 2.0}],
+        settings,
     )
     path = tmp_path / "made_up.json"
     book.write(path, dataclasses.replace(made, **changes))
@@ -330,3 +339,40 @@ def test_keys_with_several_values_make_scenes_and_levers_the_reference():
         command.scenes_of(STUDY, dict(seed="3"))
     with pytest.raises(UsageError, match="speed is no lever of made_up; there are: "):
         command.varied(STUDY, "speed")
+
+
+# ---- books on trial --------------------------------------------------------------------------------------------------
+
+
+def test_scenes_on_trial_lie_inside_the_cover_and_are_the_same_each_time(books):
+    made = book.read(books / "made_up.json")
+    scenes = held_out.drawn_scenes(made, 50, 3)
+    speeds = [scene["speed"] for scene in scenes]
+    assert min(speeds) >= 0.5 and max(speeds) <= 2.0 and len(set(speeds)) > 40
+    assert scenes == held_out.drawn_scenes(made, 50, 3) != held_out.drawn_scenes(made, 50, 4)
+
+
+def test_the_accuracies_on_trial_make_each_setting_of_the_front_the_choice(books):
+    made = book.read(books / "made_up.json")
+    found = held_out.accuracies(made, "force")
+    # All cost the same here, so only the most accurate one is ever taken.
+    assert found == [pytest.approx(0.01, rel=1e-3)]
+    assert held_out.choice_for(STUDY, {"speed": 1.5}, found[0], 1001).choice.setting.levers == {}
+    with pytest.raises(UsageError, match="speed=3.0, measured from 0.5 to 2"):
+        held_out.choice_for(STUDY, {"speed": 3.0}, 0.05, 1001)
+
+
+def test_the_share_that_holds_has_the_confidence_interval_of_clopper_and_pearson():
+    low, high = held_out_report.confidence_interval(18, 20)
+    # The tails of the binomial distribution beyond 18 of 20 hold 5 % each.
+    tail = [math.comb(20, k) for k in range(21)]
+    assert sum(tail[k] * low**k * (1 - low) ** (20 - k) for k in range(18, 21)) == pytest.approx(0.05)
+    assert sum(tail[k] * high**k * (1 - high) ** (20 - k) for k in range(19)) == pytest.approx(0.05)
+    assert (
+        held_out_report.confidence_interval(20, 20)[1] == 1.0 and held_out_report.confidence_interval(0, 20)[0] == 0.0
+    )
+
+
+def test_an_unknown_book_is_refused_by_name(books):
+    with pytest.raises(UsageError, match="no book of measured settings 'wigle'; there are: made_up"):
+        held_out.books_of(["wigle"])

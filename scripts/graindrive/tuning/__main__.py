@@ -12,10 +12,11 @@ from ..command_line import split
 from ..errors import UsageError, one_line
 from ..headless import guarded
 from ..parameter_values import convert, nearest
+from ..postproc.tuning import held_out as held_out_report
 from ..postproc.tuning.report import write_report
 from ..provenance import code_version, cpu_model
 from ..study import duration, house, loaded
-from . import book, choice, ladder
+from . import book, choice, held_out, ladder
 from .search import MOST_SEEDS, Search
 from .trials import Trials
 from .words import in_words, shown
@@ -25,12 +26,14 @@ USUAL = dict(budget="30min", target="5%", vary="", seeds=str(MOST_SEEDS), cores=
 UNITS = dict(s=1, min=60, h=3600)
 USAGE = """usage: scripts/tune STUDY [key=value …] [budget=30min] [target=5%] [vary=KEY,…] [seeds=6]
                          [cores=N] [out=DIR] [-n] [--launch]
+       scripts/tune check [BOOK …] [points=5] [cores=N] [out=DIR]
 
 Starts from the study's most accurate levers, or those that are given, and varies each alone towards cheaper values, then
 the good ones together. Keys that are no levers may have several values, as phi=0.352,0.6: each is a scene.
 budget: processor time that the runs may take (90s, 30min, 2h)      target: relative error of the headline, or NAME:5%
 vary: the levers to vary; without it all                             seeds: repeats of a setting at most
--n: only say what would be varied, and the reference's cost         --launch: then run the study with what was chosen"""
+-n: only say what would be varied, and the reference's cost         --launch: then run the study with what was chosen
+check: runs scenes that no tuning saw, drawn inside what the books of studies/data cover, with what accuracy= takes for them"""
 
 
 def main(arguments):
@@ -45,6 +48,8 @@ def main(arguments):
 
 def tune(arguments):
     """Measure, report, and with --launch run; return the exit code."""
+    if arguments[0] == "check":
+        return check(arguments[1:])
     flags = {a for a in arguments if a.startswith("-")}
     if flags - {"-n", "--launch"}:
         raise UsageError(f"there is no option {one_line(min(flags - {'-n', '--launch'}))}; there are -n and --launch")
@@ -59,7 +64,7 @@ def tune(arguments):
         ladder.parameters_of(study, {**scene, **reference})
     vary = varied(study, options["vary"])
     ladders = {key: ladder.rungs(study, {**scenes[0], **reference}, key) for key in vary}
-    out = Path(options["out"] or f"tune-{study.name}").absolute()
+    out = Path(options["out"] or f"tune_{study.name}").absolute()
     trials = Trials(study, file, out, scenes, reference, Path.cwd())
     found = {key: values for key, (values, _) in ladders.items()}
     search = Search(trials, found, target.observable, target.error, choice.CONFIDENCE, whole(options, "seeds"))
@@ -81,6 +86,33 @@ def tune(arguments):
         f"{NAME}: see {report}; {tuned.name} holds the levers chosen, for scripts/run {name} @{tuned}", file=sys.stderr
     )
     return launch(file, scenes[0], tuned, study) if "--launch" in flags else 0
+
+
+def check(words):
+    """Put books on trial; return the exit code."""
+    options = dict(points="5", cores=USUAL["cores"], out="held_out")
+    options.update(word.split("=", 1) for word in words if word.split("=", 1)[0] in options and "=" in word)
+    names = [word for word in words if "=" not in word]
+    for word in words:
+        if "=" in word and word.split("=", 1)[0] not in options:
+            raise UsageError(
+                f"{one_line(word)} is nothing that check knows; it takes names of books, points=, cores= and out="
+            )
+    count, cores, out, points = whole(options, "points"), whole(options, "cores"), Path(options["out"]).absolute(), []
+    with execution.nothing_in_the_way(out), signals.handled():
+        out.mkdir(parents=True, exist_ok=True)
+        for number, made in enumerate(held_out.books_of(names)):
+            file = study_file(made.study)
+            folder = out / made.file.removesuffix(".json")
+            points += held_out.points_of(loaded(file), file, made, folder, count, cores, number + 1)
+        command = shlex.join(["scripts/tune", "check", *words])
+        where = f"`{command}`; code {code_version()}, on {cpu_model()}."
+        report = held_out_report.write_report(out, points, where)
+    print(
+        f"{NAME}: {sum(p.holds for p in points)} of {len(points)} within what was asked for; see {report}",
+        file=sys.stderr,
+    )
+    return 0
 
 
 def study_file(name):
@@ -218,7 +250,7 @@ def measured_book(search, command):
             )
         )
     about = (trials.study.family, command, code_version(), cpu_model())
-    return book.Book(*about, trials.reference, same, cover, tuple(settings))
+    return book.Book(*about, trials.reference, same, cover, trials.scenes, tuple(settings))
 
 
 def reference_trials(trials):

@@ -1,9 +1,9 @@
 """Measured settings of a study: written by a tuning, shipped in `studies/data`, and read by whoever asks for an accuracy.
 
 A book is a JSON file: `study`, `command`, `code_version`, `cpu`; `reference` {lever: value}; `same` {key: value} and `cover`
-{key: [lowest, highest] or words} of the scenes that were measured; `settings`, each with its `levers` {lever: value} where
-they differ from the reference, `cost_factor` of measured over estimated processor time, `core_seconds` and `memory` [MB] of a
-run on average, `runs`, and `effects` {observable: Effect}.
+{key: [lowest, highest] or words} of the scenes that were measured; `scenes`, the keys that were given for each; `settings`,
+each with its `levers` {lever: value} where they differ from the reference, `cost_factor` of measured over estimated processor
+time, `core_seconds` and `memory` [MB] of a run on average, `runs`, and `effects` {observable: Effect}.
 """
 
 import dataclasses
@@ -44,6 +44,7 @@ class Book:
     reference: dict
     same: dict
     cover: dict
+    scenes: list
     settings: tuple
     file: str = ""
 

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
 
 FEWEST_RUNS = 2  # deviations of which a scatter can be taken
 
@@ -41,6 +40,8 @@ class Effect:
 
 def quantile(confidence, freedom):
     """Return the quantile of Student's distribution between whose two signs lies the part `confidence`."""
+    from scipy import special  # a tenth of a second that no other start of a study needs
+
     if not freedom > 0:
         return math.inf
     upper = 0.5 + confidence / 2

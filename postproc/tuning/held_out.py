@@ -1,0 +1,98 @@
+"""The report of books on trial: how often a run chosen by its accuracy lies within it, and how well its cost was foretold."""
+
+from scipy import stats
+
+from ...whole_files import write_text
+from ...tuning.words import in_words
+from .. import figures
+from ..campaign.plots import COLOURS, MARKERS
+
+NEAR = 0.2  # of the cost: what a prediction should be within
+
+
+def write_report(folder, points, words):
+    """Write `report.md`, its figure and `table.csv` of a list of `Point`s; `words` say by which command, code and processor."""
+    name = folder.resolve().name
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    with figures.plt.rc_context(figures.STYLE):
+        figures.save_as(drawn(points), folder / "figures", f"{name}-points")
+    write_text(folder / "report.md", "\n\n".join(parts(name, points, words)) + "\n")
+    return folder / "report.md"
+
+
+def drawn(points):
+    """Return the figure: error over what was asked for, and the cost over what was foretold, by study."""
+    figure, (left, right) = figures.plt.subplots(1, 2, figsize=(2 * figures.COLUMN_WIDTH, 2.6), layout="constrained")
+    for k, study in enumerate(dict.fromkeys(p.study for p in points)):
+        own = [p for p in points if p.study == study]
+        style = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="none", markersize=4, label=study)
+        left.plot([100 * p.asked for p in own], [100 * max(p.error, 1e-4) for p in own], **style)
+        right.plot([p.predicted for p in own], [p.measured for p in own], **style)
+    for axes, factor in ((left, 0), (right, NEAR)):
+        axes.set(xscale="log", yscale="log")
+        low, high = axes.get_xlim()
+        axes.plot([low, high], [low, high], color=figures.GREY, linewidth=0.8)
+        if factor:
+            axes.fill_between(
+                [low, high],
+                [low / (1 + factor), high / (1 + factor)],
+                [low * (1 + factor), high * (1 + factor)],
+                color=figures.GREY,
+                alpha=0.3,
+                linewidth=0,
+            )
+        axes.set_xlim(low, high)
+    left.set(xlabel="error asked for [%]", ylabel="error that came out [%]")
+    right.set(xlabel="core-seconds foretold", ylabel="core-seconds taken")
+    left.legend(fontsize=6)
+    return figure
+
+
+def parts(name, points, words):
+    """Return the paragraphs of the report."""
+    within, near = sum(p.holds for p in points), sum(abs(p.measured / p.predicted - 1) <= NEAR for p in points)
+    low, high = (
+        float(x)
+        for x in stats.beta.ppf([0.05, 0.95], [within, within + 1], [len(points) - within + 1, len(points) - within])
+    )
+    low, high = (0.0 if np.isnan(low) else low), (1.0 if np.isnan(high) else high)
+    saved = sum(p.measured for p in points) / sum(p.reference for p in points)
+    return [
+        f"## Accuracy on trial: scenes that no tuning saw (`{name}`)",
+        words,
+        f"{within} of {len(points)} runs lie within the error that was asked for; at 90 % confidence between {100 * low:.0f} and"
+        f" {100 * high:.0f} % of all such runs do (Clopper, Pearson 1934), 90 % are promised. They took {saved:.2f} of the"
+        f" references' processor time; {near} of {len(points)} predictions of it are within {100 * NEAR:.0f} %.",
+        f"![Accuracy on trial](figures/{name}-points.png)",
+        "Left: error of the headline against the reference run of the same scene and seed, and the error asked for; below the"
+        " line it holds. Right: processor time.",
+        table(points),
+    ]
+
+
+def confidence_interval(good, tries):
+    """Return the shares between which the true one lies at 90 %, of `good` in `tries`.
+
+    C. J. Clopper, E. S. Pearson, Biometrika 26, 404 (1934).
+    """
+    low = stats.beta.ppf(0.05, good, tries - good + 1) if good else 0.0
+    high = stats.beta.ppf(0.95, good + 1, tries - good) if good < tries else 1.0
+    return float(low), float(high)
+
+
+def table(points):
+    """Return the points as a Markdown table."""
+    heading = "study scene observable asked taken error holds core-s,_foretold of_the_reference".split()
+    lines = ["| " + " | ".join(word.replace("_", " ") for word in heading) + " |", "|---" * len(heading) + "|"]
+    for p in points:
+        scene = " ".join(
+            f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}" for key, value in p.scene.items()
+        )
+        cells = [p.study, scene, p.observable, f"{100 * p.asked:.2g} %", in_words(p.taken), f"{100 * p.error:.2g} %"]
+        cells += [
+            "yes" if p.holds else "**no**",
+            f"{p.measured:.3g}, {p.predicted:.3g}",
+            f"{p.measured / p.reference:.2f}",
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)

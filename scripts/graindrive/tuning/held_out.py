@@ -1,0 +1,142 @@
+"""Books on trial: scenes that no tuning saw, inside what a book covers, with what `accuracy=` takes and with the reference."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..command_line import parse
+from ..errors import UsageError
+from ..parameter_values import argument
+from . import book as books
+from .choice import CONFIDENCE
+from .trials import Trial, Trials
+from .words import in_words
+
+FIRST_SEED = 1001  # far from those of any tuning
+SLACK = 1.0001  # over a setting's bound: the accuracy for which it is just good enough
+
+
+@dataclass(frozen=True)
+class Point:
+    """One scene on trial: `asked` is the relative error allowed, `taken` what the study took for it, `error` what came out.
+
+    `predicted` and `measured` are processor times [s] of the run with the levers taken, `reference` that of the reference.
+    """
+
+    study: str
+    book: str
+    scene: dict
+    observable: str
+    asked: float
+    taken: tuple
+    error: float
+    predicted: float
+    measured: float
+    reference: float
+
+    @property
+    def holds(self):
+        """True if the error is within what was asked for."""
+        return self.error <= self.asked
+
+
+def drawn_scenes(book, count, seed):
+    """Return `count` scenes inside a book's cover: keys that had several numbers are drawn between them, words among them.
+
+    Numbers whose range spans more than a factor of three are drawn by their logarithm.
+    """
+    random, scenes = np.random.default_rng(seed), []
+    keys = list(book.scenes[0])
+    for _ in range(count):
+        scene = {}
+        for key in keys:
+            values = list(dict.fromkeys(s[key] for s in book.scenes))
+            scene[key] = values[0] if len(values) == 1 else between(random, values)
+        scenes.append(scene)
+    return scenes
+
+
+def between(random, values):
+    """Return a random number within the range of `values`, or one of them where they are words or switches."""
+    if not all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in values):
+        return values[random.integers(len(values))]
+    low, high = min(values), max(values)
+    if low > 0 and high > 3 * low:
+        value = float(np.exp(random.uniform(np.log(low), np.log(high))))
+    else:
+        value = float(random.uniform(low, high))
+    return round(value) if all(isinstance(v, int) for v in values) else float(f"{value:.4g}")
+
+
+def accuracies(book, observable):
+    """Return the errors for which some setting of the book is the cheapest that will do, the smallest first."""
+    bounds = {s.effects[observable].bound(CONFIDENCE): s.core_seconds for s in book.settings if observable in s.effects}
+    front, least = [], np.inf
+    for bound in sorted((b for b in bounds if b * SLACK < 1), reverse=False):
+        if bounds[bound] < least:
+            least = bounds[bound]
+            front.append(bound * SLACK)
+    return front
+
+
+def points_of(study, study_file, book, folder, count, cores, seed):
+    """Return `count` `Point`s of a book, with their runs in `folder`; runs that are there are not made again."""
+    observable = study.headline.name
+    errors = accuracies(book, observable)
+    if not errors:
+        raise UsageError(f"{book.file}: no setting has an error of {observable} that is known to be below 100 %")
+    trials = Trials(study, study_file, folder, drawn_scenes(book, count, seed), dict(book.reference), folder)
+    asked = [errors[k % len(errors)] for k in range(count)]
+    taken = [choice_for(study, trials.scenes[k], asked[k], FIRST_SEED + k) for k in range(count)]
+    settings = [tuple(sorted(t.choice.setting.levers.items())) for t in taken]
+    wanted = [Trial(s, k, FIRST_SEED + k) for k in range(count) for s in dict.fromkeys([(), settings[k]])]
+    trials.make(wanted, cores)
+    found = []
+    for k in range(count):
+        one, reference = (trials.outcomes.get(Trial(s, k, FIRST_SEED + k)) for s in (settings[k], ()))
+        if one is None or reference is None:
+            lost = trials.failed.get(Trial(settings[k], k, FIRST_SEED + k)) or trials.failed.get(
+                Trial((), k, FIRST_SEED + k)
+            )
+            raise UsageError(f"{book.file}: a run of {in_words(settings[k])} in {trials.scenes[k]} did not end: {lost}")
+        value, there = one.found[observable][0], reference.found[observable][0]
+        error = abs(value - there) / abs(there) if there else np.inf
+        factor = taken[k].choice.setting.cost_factor
+        predicted = (
+            factor * study.cost.core_seconds(one.parameters) if study.cost else taken[k].choice.setting.core_seconds
+        )
+        found.append(
+            Point(
+                study.name,
+                book.file,
+                trials.scenes[k],
+                observable,
+                asked[k],
+                settings[k],
+                float(error),
+                float(predicted),
+                one.core_seconds,
+                reference.core_seconds,
+            )
+        )
+    return found
+
+
+def choice_for(study, scene, error, seed):
+    """Return the parameters that the study takes for an accuracy in a scene; UsageError where it does not find the book."""
+    words = [argument(study.parameters, key, value) for key, value in {**scene, "seed": seed}.items()]
+    p = parse(study, [*words, f"accuracy={error:.6g}"], environment={})
+    if p.choice.setting is None:
+        raise UsageError(f"{' '.join(words)}: {p.choice.words}")
+    return p
+
+
+def books_of(names):
+    """Return the books in `names`, files or names of those shipped, all of them for none; UsageError for a name that is none."""
+    known = {book.file.removesuffix(".json"): book for book in books.shipped(books.FOLDER)}
+    if not names:
+        return list(known.values())
+    for name in names:
+        if name not in known:
+            raise UsageError(f"there is no book of measured settings '{name}'; there are: {' '.join(known) or 'none'}")
+    return [known[name] for name in names]
