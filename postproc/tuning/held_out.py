@@ -51,11 +51,7 @@ def drawn(points):
 def parts(name, points, words):
     """Return the paragraphs of the report."""
     within, near = sum(p.holds for p in points), sum(abs(p.measured / p.predicted - 1) <= NEAR for p in points)
-    low, high = (
-        float(x)
-        for x in stats.beta.ppf([0.05, 0.95], [within, within + 1], [len(points) - within + 1, len(points) - within])
-    )
-    low, high = (0.0 if np.isnan(low) else low), (1.0 if np.isnan(high) else high)
+    low, high = confidence_interval(within, len(points))
     saved = sum(p.measured for p in points) / sum(p.reference for p in points)
     return [
         f"## Accuracy on trial: scenes that no tuning saw (`{name}`)",
