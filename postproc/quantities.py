@@ -175,7 +175,12 @@ QUANTITIES = {
             flow_balance="drum: (Q+ + Q-)/Q+, 0 in a steady state",
             rigid_deviation="drum: root mean square of u + Omega z in the static part over that of Omega z",
             dem_continuum_difference="drum: L2 norm of the difference of u(z) of grains and continuum over that of the grains",
+            continuum_steps="drum: time steps of the continuum",
+            continuum_steady="drum: 1 if the continuum's averages began when its flow was found steady, else 0",
+            continuum_area_drift="drum: by how much the continuum's area of grains grew during the run, over that area",
+            ill_posed_share="drum: part of the continuum's bed and of the time in which its equations were ill-posed",
         ),
+        **of("s", continuum_core_seconds="drum: processor time of the continuum's steps"),
         **of(
             "degrees",
             surface_angle_deg="drum: angle of the free surface at the axis",
@@ -235,6 +240,15 @@ QUANTITIES = {
         ),
         **of("spin", growth="shear study: dL/dt / L of the cell's height"),
         **of("length", height="shear study: L, the cell's height"),
+    },
+    "continuum": {
+        **of("time", t="drum: time of a row of the continuum's history"),
+        **of(
+            "degrees",
+            turn="drum: how far it has turned since the start",
+            centre_angle="drum: by how much the bed's centre of mass is turned from below the axis",
+        ),
+        **of("velocity", speed="drum: root mean square of the bed's velocity"),
     },
     "flow": {
         **of("-", height="middles of the parts of the cell's height, over that height"),
@@ -310,6 +324,8 @@ QUANTITIES = {
             samples="moments averaged, by phase",
             area_fraction="area of disks over area",
             solid_fraction="volume of spheres over volume",
+            ill_posed="drum, continuum: share of the moments in which the equations were ill-posed there",
+            part_of_the_bed="attribute, drum, continuum: solid fraction of the bed, area_fraction inside of it",
         ),
         **of("density", density="mass over area; of spheres over volume, kg/m^3"),
         **of("velocity", velocity="mean velocity (x, y), of spheres (x, y, z); nan where no grain was"),
@@ -372,6 +388,18 @@ QUANTITIES = {
         **of("-", threads="threads that ran it"),
     },
 }
+
+# Of a run of both models: what `keep` of the drum study says of the continuum, beside the same of the grains.
+OF_BOTH_MODELS = (
+    "torque centre_angle surface_angle_deg thickness_over_diameter layer_over_diameter surface_over_diameter packing_fraction"
+    " rigid_deviation flow_down flow_up flow_balance surface_speed"
+)
+QUANTITIES["summary"].update(
+    {
+        f"continuum_{name}": Quantity(QUANTITIES["summary"][name].unit, f"drum, model=both: {name} of the continuum")
+        for name in OF_BOTH_MODELS.split()
+    }
+)
 
 
 def place_of(group):

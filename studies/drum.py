@@ -47,7 +47,7 @@ from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drum import blocks, figure  # noqa: E402
 from graindrive.postproc.drum.campaign import REPORT  # noqa: E402
-from graindrive.postproc.drum.flow import SURFACE_LEVEL  # noqa: E402
+from graindrive.postproc.drum.flow import SURFACE_LEVEL, SURFACE_REACH  # noqa: E402
 from graindrive.postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady  # noqa: E402
 from graindrive.postproc.statistics import block_mean  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -64,6 +64,9 @@ PAPERS_WALL = {150.0: 475, 300.0: 632, 450.0: 946}  # D: N_w
 PAPERS_DRUM, PAPERS_OMEGA = 150.0, 6.28e-3  # d, sqrt(g/d), of its Figs. 2 and 8
 BED_FRACTION = 0.828  # solid fraction at which the paper's grains fill half of the drum, mean over its three D
 WIDEST_GAP = 0.8  # [d] between disks of the wall; a grain of 1 d must not come through
+SHALLOWEST = 3  # [d] of the grains' bed; less is no layer on a bed
+MOST_ROWS = 50_000  # of the series; a row costs some 0.2 ms
+SAME_FILLING = 0.05  # by which the models of one run may differ in what they fill
 SMALLEST_DRUM = 20  # d
 CENTRIFUGES = 1.0  # Fr from which grains at the wall do not fall
 POURING_RESTITUTION, POURING_STEP, REST = 0.5, 5e-4, 1e-3  # [-]; [sqrt(d/g)] at k_n = 2e5 m g/d; [m g d]
@@ -147,13 +150,15 @@ class DrumParameters(StudyParameters):
         return PAPERS_OMEGA * float(np.sqrt(PAPERS_DRUM / self.drum_diameter))
 
     @property
-    def count(self):
-        """Number of grains: half of the drum at `BED_FRACTION`, but for the paper's own."""
-        if self.grains is not None:
-            return self.grains
+    def half(self):
+        """Number of grains, not rounded, that fill half of the drum: the paper's own, or by `BED_FRACTION`."""
         mean_square = (SMALLEST_DIAMETER**2 + SMALLEST_DIAMETER * LARGEST_DIAMETER + LARGEST_DIAMETER**2) / 3
-        half = PAPERS_GRAINS.get(self.drum_diameter, BED_FRACTION * self.drum_diameter**2 / 2 / mean_square)
-        return round(2 * self.filling * half)
+        return PAPERS_GRAINS.get(self.drum_diameter, BED_FRACTION * self.drum_diameter**2 / 2 / mean_square)
+
+    @property
+    def count(self):
+        """Number of grains."""
+        return round(2 * self.filling * self.half) if self.grains is None else self.grains
 
     @property
     def wall_count(self):
@@ -288,6 +293,7 @@ def check(p):
     """Refuse values that no run can be made of; return the grains' time step over the critical one, nan without grains."""
     check_speed(p)
     check_diameter(p)
+    drum_continuum.check_words(p)
     if p.model != "continuum":
         check_room(p)
     if p.model != "dem":
@@ -307,6 +313,11 @@ def check(p):
         raise UsageError(
             f"the drum turns by {np.degrees(radians_per_step(p)):.3g} degrees in a step: turn={p.turn:g} must hold four of them"
             f" in each of {BLOCKS} blocks, and start_turn={p.start_turn:g} four; raise them or lower dt_factor"
+        )
+    if (rows := most_rows(p)) > MOST_ROWS:
+        raise UsageError(
+            f"start_turn={p.start_turn:g} and turn={p.turn:g} degrees lie too far apart: rows that are short enough for one are"
+            f" {rows} for both, more than {MOST_ROWS}; raise the smaller or lower the larger"
         )
     return ratio
 
@@ -339,17 +350,38 @@ def check_room(p):
         raise UsageError(
             f"filling={p.filling:g} leaves the grains no room to be poured and to flow; it must be at most {drum.MOST_FILLING:g}"
         )
-    gap = p.drum_diameter * np.sin(np.pi / p.wall_count) - 1
+    gap = p.drum_diameter * np.sin(np.pi / max(p.wall_count, 2)) - 1
     if p.wall_count > (most := 2 * round(np.pi * p.drum_diameter)):
         raise UsageError(f"wall_disks={p.wall_count} are more than twice as many as touch; at most {most} are possible")
-    if gap > WIDEST_GAP or p.wall_count < 3:
+    if gap > WIDEST_GAP:
         raise UsageError(
             f"wall_disks={p.wall_count} leave gaps of {gap:.3g} d, through which grains leave; at least"
             f" {int(np.ceil(np.pi * p.drum_diameter / (1 + WIDEST_GAP)))} are needed"
         )
+    if p.spacing > p.drum_diameter * SURFACE_REACH / 1.5 * (1 + 1e-9):
+        raise UsageError(
+            f"field_spacing={p.spacing:g} d leaves fewer than four columns of bins within D/8 of the axis, where the surface is"
+            f" looked for; take {p.drum_diameter * SURFACE_REACH / 1.5:.3g} d or less"
+        )
     if (bins := (p.drum_diameter / p.spacing) ** 2 * BLOCKS) > MOST_BINS:
         raise UsageError(f"field_spacing={p.spacing:g} d makes {bins:.2g} bins, more than {MOST_BINS:.0e}; raise it")
     drum.check(recipe(p))
+    check_bed(p)
+
+
+def check_bed(p):
+    """UsageError for grains that make no bed, or in a run of both models another one than the continuum's."""
+    filled = p.count / (2 * p.half)
+    if (deep := p.drum_diameter * np.interp(filled, *drum.filling_by_level())) < SHALLOWEST:
+        raise UsageError(
+            f"{p.count} grains make a bed {deep:.2g} d deep in a drum of {p.drum_diameter:g} d, and a flow on a bed needs"
+            f" {SHALLOWEST} d at least; raise filling, grains or drum_diameter"
+        )
+    if p.model == "both" and p.grains is not None and abs(filled - p.filling) > SAME_FILLING * p.filling:
+        raise UsageError(
+            f"grains={p.count} fill {filled:.3g} of the drum and filling={p.filling:g} is that of the continuum: model=both"
+            f" compares equal fillings; leave grains at auto or give filling={filled:.3g}"
+        )
 
 
 def run(p, folder):
@@ -369,17 +401,11 @@ def keep(p, folder, flows):
     folder.summarize(froude=p.froude_number)
     for model, flow in flows.items():
         beside = "continuum_" if model != next(iter(flows)) else ""
-        for name, value in flow.summary.items():
-            folder.summarize(**{f"{beside}{name}": (value, unit_of_summary(name)) if beside else value})
+        folder.summarize(**{f"{beside}{name}": value for name, value in flow.summary.items()})
         folder.write(f"depth/{model}", flow.profile)
     if len(flows) > 1:
         value, error = blocks.dem_continuum_difference(flows["dem"], flows["continuum"], p.drum_diameter)
         folder.summarize(dem_continuum_difference=value, dem_continuum_difference_err=error)
-
-
-def unit_of_summary(name):
-    """Return the unit of a quantity; None for a standard error, which has none of its own."""
-    return None if name.endswith("_err") else quantities.unit_of("summary", name, quantities.GRAIN)
 
 
 def run_grains(p, folder, ratio):

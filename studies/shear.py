@@ -52,6 +52,9 @@ TIME_STEP = 1e-4  # sqrt(d/g), the drum paper's: 50 steps a contact
 STRAIN_OF_ROW = 0.02  # between two rows of the series
 MEASURE_EVERY = 5  # steps; the height answers as often
 FEWEST_GRAINS = 60  # with fewer the cell is too short for the search
+FEWEST_ROWS = 4  # that the averages go over
+MOST_STRAIN_OF_ROW = 0.05  # rows of MEASURE_EVERY steps are no shorter than these make them
+HELD_WITHIN = 0.1  # of the pressure, the mean one, or 3 of its errors
 # Particle-steps per second of one busy core with 400 disks by I: where the sides are fast lists are made anew every few steps.
 RATES = ((0.001, 0.01, 0.1, 0.5), (9e6, 7e6, 3.5e6, 1.4e6))
 
@@ -90,7 +93,7 @@ class ShearParameters(StudyParameters):
 
 
 PRESETS = {
-    "smoke": dict(grains=100, settle_strain=0.5, strain=1.5, dt_factor=2),
+    "smoke": dict(grains=100, settle_strain=3, strain=6, dt_factor=2),
     "demo": dict(dt_factor=2),
     "paper": dict(grains=4000, strain=20),
 }
@@ -131,16 +134,47 @@ def cell(p):
 
 def check(p):
     """Refuse values that no run can be made of; return the time step over the critical one."""
-    if p.settle_strain >= p.strain - 2 * STRAIN_OF_ROW:
+    if p.exports:
         raise UsageError(
-            f"settle_strain={p.settle_strain:g} leaves nothing of strain={p.strain:g} to average; raise strain or lower it"
+            f"export={','.join(p.exports)} writes pictures of the grains, and the shear study keeps none; leave it away"
         )
     if p.shear_rate is not None and not p.area_fraction:
         raise UsageError(
             f"shear_rate={p.shear_rate:g} is a key of runs at constant area_fraction; at constant pressure give inertial_number"
         )
-    progress.require_feasible(p.strain / (p.rate * time_step(p)))
-    return cell(p).check(time_step(p), p.largest_overlap)
+    progress.require_feasible(p.strain / (p.rate * time_step(p)), "raise dt_factor or the shear, or lower strain")
+    ratio = cell(p).check(time_step(p), p.largest_overlap)
+    check_rows(p)
+    check_closing(p)
+    return ratio
+
+
+def check_rows(p):
+    """UsageError where the rows of the series are too long, or too few for averages."""
+    row = p.rate * time_step(p) * block_of(p)
+    if row > MOST_STRAIN_OF_ROW * (1 + 1e-9):
+        raise UsageError(
+            f"at shear_rate={p.rate:.3g} {MEASURE_EVERY} steps, the shortest row of the series, shear by {row:.3g}, more than"
+            f" {MOST_STRAIN_OF_ROW:g}; lower dt_factor or the shear"
+        )
+    if p.settle_strain > p.strain - FEWEST_ROWS * row * (1 - 1e-9):
+        raise UsageError(
+            f"settle_strain={p.settle_strain:g} leaves nothing of strain={p.strain:g} to average: {FEWEST_ROWS} rows of"
+            f" {row:.3g} at least; raise strain or lower it"
+        )
+
+
+def check_closing(p):
+    """UsageError for an area fraction that the cell does not come to before its averages begin."""
+    if not p.area_fraction:
+        return
+    first = cell(p).area_fraction_at_first
+    strain = p.rate * abs(np.log(p.area_fraction / first)) / shear_cell.CLOSING_RATE
+    if strain > p.settle_strain:
+        raise UsageError(
+            f"the cell comes from its first area fraction, {first:.3g}, to area_fraction={p.area_fraction:g} in a strain of"
+            f" {strain:.3g}, averages begin after settle_strain={p.settle_strain:g}; raise it and strain, or lower shear_rate"
+        )
 
 
 # Run ------------------------------------------------------------------------------------------------------------------
@@ -172,13 +206,25 @@ def record(p, folder, march):
         folder.append(**{name: row[name] for name in UNITS})
         track.append(row)
 
-    with recording.overlap_advice(
-        "lower inertial_number, pressure or dt_factor, or raise stiffness or largest_overlap"
-    ):
+    held = "shear_rate, area_fraction" if p.area_fraction else "inertial_number, pressure"
+    with recording.overlap_advice(f"lower {held} or dt_factor, or raise stiffness or largest_overlap"):
         recording.run_sampled(folder, march, steps_of(p), block, sample, track=track, label=f"shearing by {p.strain:g}")
     found = steady_flow(track.arrays(), p.settle_strain, float(p.rate))
     folder.write("flow", found.profile)
     folder.summarize(**found.summary)
+    if words := complaint(p, found.summary):
+        folder.summarize(steady=0)
+        print(f"{words}; raise settle_strain and strain", file=sys.stderr)
+
+
+def complaint(p, found):
+    """Return in words why the averages are not those of the steady flow that was asked for; "" where they are."""
+    pressure, error = found["mean_pressure"], found["mean_pressure_err"]
+    if not p.area_fraction and not abs(pressure - p.pressure) <= max(HELD_WITHIN * p.pressure, 3 * error):
+        return (
+            f"the cell did not come to its pressure: mean_pressure={pressure:.3g} where pressure={p.pressure:g} is held"
+        )
+    return "" if found["steady"] else "tau or phi is not steady by the test to the end of the run"
 
 
 # Study ----------------------------------------------------------------------------------------------------------------

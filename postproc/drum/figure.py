@@ -81,7 +81,8 @@ def draw_surface(axes, surface, field, radius, colour):
     cell = field.x[1] - field.x[0]  # of a continuum the last two before the wall belong to it
     beside_the_wall = np.hypot(field.x[None, :], field.y[:, None]) > 0.97 * radius - 1 - 2 * cell
     fraction = np.ma.masked_where(beside_the_wall, field.fraction)
-    axes.contour(field.x, field.y, fraction, [field.surface_level], colors=[colour], linewidths=0.8)
+    if fraction.count() and fraction.min() < field.surface_level < fraction.max():
+        axes.contour(field.x, field.y, fraction, [field.surface_level], colors=[colour], linewidths=0.8)
     if len(surface.x):
         x = np.array([surface.x.min(), surface.x.max()])
         axes.plot(x, surface.height + np.tan(surface.angle) * x, color=BLACK, linewidth=1.2)

@@ -14,7 +14,8 @@ def draw(path, frame=-1):
         figure, axes = plt.subplots(4, 1, figsize=(COLUMN_WIDTH, 6.0), layout="constrained")
         figure.suptitle(title(run), fontsize=8)
         strain = series["strain"]
-        ratio = series["shear_stress"] / series["mean_pressure"]
+        pressed = np.where(series["mean_pressure"] > 0, series["mean_pressure"], np.nan)
+        ratio = series["shear_stress"] / pressed
         for panel, values, name, label, colour in (
             (axes[0], ratio, "stress_ratio", r"$\mu = \tau/p$", BLUE),
             (axes[1], series["mean_pressure"], "mean_pressure", r"$p$  [$\rho g d$]", VERMILLION),

@@ -51,10 +51,9 @@ def steady_flow(series, settle, shear_rate):
     summary = {name: mean.value for name, mean in means.items()}
     summary.update({f"{name}_err": mean.error for name, mean in means.items()})
     pressure = means["mean_pressure"]
-    inertial = float(shear_rate / np.sqrt(pressure.value))
-    summary.update(
-        flow_inertial_number=inertial, flow_inertial_number_err=inertial * pressure.error / (2 * pressure.value)
-    )
+    inertial = float(shear_rate / np.sqrt(pressure.value)) if pressure.value > 0 else float("nan")
+    relative = pressure.error / (2 * pressure.value) if pressure.value > 0 else float("nan")
+    summary.update(flow_inertial_number=inertial, flow_inertial_number_err=inertial * relative)
     profile = mean_profile(kept["profile"])
     across = shear_rate * float(kept["height"].mean())
     deviation = float(np.sqrt(np.mean(profile["vx"] ** 2))) / across

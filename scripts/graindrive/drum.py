@@ -80,6 +80,13 @@ def too_full(recipe):
     )
 
 
+def filling_by_level():
+    """Return (part of a drum's area that lies below a level, the level over the diameter from the bottom), each (n,)."""
+    level = np.linspace(-0.5, 0.5, 4001)
+    area = np.cumsum(np.sqrt(np.maximum(0.25 - level**2, 0)))
+    return area / area[-1], level + 0.5
+
+
 def wall_places(diameter, disks):
     """Return (x, y) of the wall's disks, equally spaced on the circle of that diameter, each (disks,)."""
     angle = 2 * np.pi * np.arange(disks) / disks

@@ -17,14 +17,15 @@ import sys
 import h5py
 import numpy as np
 
-from . import checkpoint, progress, recording, surfaces
+from . import checkpoint, drum, progress, recording, surfaces
 from .continuum import FieldMeans, FlowMarch, centres
-from .engines import TwoPhaseFlow
-from .errors import UsageError
+from .engines import TwoPhaseFlow, pressure_solvers
+from .errors import UsageError, one_line
 from .postproc.drum import blocks
 from .postproc.drum.flow import BED_FRACTION, SURFACE_LEVEL
 from .postproc.measured import Measured
 from .postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady
+from .postproc.statistics import block_mean
 
 GRAIN_MASS = np.pi / 4  # m [rho d^2]: the paper's viscosities and pressures are in m, g, d
 GAS_DENSITY, GAS_VISCOSITY = 1e-3, 1e-6  # of those of the bed, the viscosity of the largest
@@ -38,13 +39,29 @@ MOST_FILLING, LEAST_DEPTH = 0.9, 6  # of the drum; of the bed, in cells
 MOST_CROSSED = (
     0.5  # cells that may be crossed in a step, those of the grid's corners that turn with the wall among them
 )
-RATE = 3e6  # cell-steps per second of one core at continuum_dt=0.02
+STIFFEST = (
+    1e8  # viscosity over density times step over cell^2: from ten times that on round-off is seen in the velocities
+)
+# Cell-steps per second of one core at continuum_dt=0.02, by cells across: on finer grids the viscosity's solver works more.
+RATES = ((75, 150, 300), (3e6, 2.2e6, 1.3e6))
 PART = "continuum"  # of a run with both models, in its checkpoints
 NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_second")
 
 
+def check_words(p):
+    """UsageError for a word that no run knows, also where no continuum is asked for."""
+    if p.pressure_solver and p.pressure_solver not in (known := pressure_solvers()):
+        raise UsageError(
+            f"pressure_solver={one_line(p.pressure_solver)} is not known; leave it empty or take one of {', '.join(known)}"
+        )
+
+
 def check(p):
     """UsageError for parameters of which no continuum can be made."""
+    if p.model == "continuum" and (texts := [name for name in p.exports if name != "vtk"]):
+        raise UsageError(
+            f"export={','.join(texts)} writes grains, and model=continuum has none; take export=vtk, which holds its fields"
+        )
     if p.cells < FEWEST_CELLS:
         raise UsageError(
             f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75"
@@ -64,23 +81,32 @@ def check(p):
             f"continuum_dt={p.continuum_dt:g} lets the wall cross {crossed:.2g} cells in a step, but it must be less than"
             f" {MOST_CROSSED:g}; at this speed take less than {p.continuum_dt * MOST_CROSSED / crossed:.3g}"
         )
+    stiff = p.largest_viscosity * GRAIN_MASS / BED_FRACTION * p.continuum_dt / (p.drum_diameter / p.cells) ** 2
+    if stiff > STIFFEST:
+        raise UsageError(
+            f"largest_viscosity={p.largest_viscosity:g} drowns the flow in round-off: eta dt/(rho cell^2) is {stiff:.2g}, at"
+            f" most {STIFFEST:g}; lower it to {p.largest_viscosity * STIFFEST / stiff:.2g} or less, or lower continuum_dt"
+        )
     if p.dynamic_friction < p.static_friction:
         raise UsageError(
             f"dynamic_friction={p.dynamic_friction:g} must not be below static_friction={p.static_friction:g}; exchange them"
         )
+    steps = np.radians(MOST_TURN + WINDOW) / (p.omega * p.continuum_dt)
+    progress.require_feasible(steps, "raise continuum_dt or the drum's speed")
     try:
         flow_of(p)
     except ValueError as error:
-        raise UsageError(f"of these keys no continuum can be made: {error}") from None
-    progress.require_feasible(np.radians(MOST_TURN + WINDOW) / (p.omega * p.continuum_dt))
+        told = str(error)
+        if p.viscosity == "split" and "time step" in told:  # the solver's ways out are no keys of the study
+            told = told.partition("; ")[0] + "; lower continuum_dt or largest_viscosity, or take viscosity=full"
+        raise UsageError(f"of these keys no continuum can be made: {told}") from None
+    except RuntimeError as error:  # the pressure of the start is solved for at once
+        raise UsageError(f"tolerance={p.tolerance:g} is not reached by the pressure at the start: {error}") from None
 
 
 def level_of(p):
     """Return the height [d] below which the open part of the drum is filled at the start."""
-    radius = p.drum_diameter / 2
-    y = np.linspace(-radius, radius, 4001)
-    area = np.cumsum(np.sqrt(np.maximum(radius**2 - y**2, 0)))
-    return float(np.interp(p.filling, area / area[-1], y))
+    return float(p.drum_diameter * (np.interp(p.filling, *drum.filling_by_level()) - 0.5))
 
 
 def flow_of(p):
@@ -134,7 +160,7 @@ def cell_steps(p):
 
 def seconds(p):
     """Return the seconds that `run` takes one core."""
-    return cell_steps(p) / RATE
+    return cell_steps(p) / float(np.interp(p.cells, *RATES))
 
 
 class Record(recording.Track):
@@ -177,12 +203,29 @@ def run(p, folder):
         stage.update(grains_notes={name: folder.provenance[name] for name in NOTES if name in folder.provenance})
     if going_on:
         stage.update(recording.load_stage(folder, march, ("average_row",)))
+    announce(p, march)
+    return record(p, folder, march, stage, before, going_on, area)
+
+
+def announce(p, march):
+    """Say on stderr of what grid and step a run is, and if its bed is a liquid."""
     print(
         f"{march.size} cells of {p.drum_diameter / p.cells:.3g} d, dt = {p.continuum_dt:.3g} sqrt(d/g),"
         f" a turn in {2 * np.pi / p.omega:.4g} sqrt(d/g)",
         file=sys.stderr,
     )
-    return record(p, folder, march, stage, before, going_on, area)
+    if (creep := creep_over_turning(p)) > 1:
+        print(
+            f"largest_viscosity={p.largest_viscosity:g} lets the bed creep under its weight {creep:.2g} times as fast as the drum"
+            " turns: it flows as a liquid; raise largest_viscosity",
+            file=sys.stderr,
+        )
+
+
+def creep_over_turning(p):
+    """Return the shear rate over Omega [-] at which eta_max bears mu_s p at the bottom of a half full drum."""
+    pressure = BED_FRACTION * p.drum_diameter / 2
+    return p.static_friction * pressure / (p.largest_viscosity * GRAIN_MASS) / p.omega
 
 
 def record(p, folder, march, stage, before, going_on, area):
@@ -238,7 +281,8 @@ def grid_of(p):
 def torque_of(x, fraction):
     """Return the bed's torque on the drum as `Measured` [rho g d^3], from the solid fractions (blocks, ny, nx) of a steady flow.
 
-    Its weight turns the bed about the axis; in a steady flow the drum holds it.
+    Its weight turns the bed about the axis; in a steady flow the drum holds it. Fractions are those of the cells as a whole:
+    in the layer in which fluid becomes wall the bed's times the openness, which together make up the bed of the drum itself.
     """
     of_blocks = -(fraction * x).sum(axis=(1, 2)) * (x[1] - x[0]) ** 2
     error = of_blocks.std(ddof=1) / np.sqrt(len(of_blocks)) if len(of_blocks) > 1 else float("nan")
@@ -249,37 +293,45 @@ def keep(p, folder, march, track, means, area, stage):
     """Store the rows as `continuum`, the means as `fields/continuum`; return the `Blocks` of the steady flow."""
     x, y = grid_of(p)
     flow, columns = march.flow, track.arrays()
-    units = dict(t="sqrt(d/g)", turn="degrees", centre_angle="degrees", speed="sqrt(g d)")
-    folder.write("continuum", {name: (values, units[name]) for name, values in columns.items()})
+    folder.write("continuum", columns)
     inside = flow.openness >= 1  # the layer in which fluid becomes wall counts as wall
-    fraction = BED_FRACTION * np.clip(means.mean("fraction"), 0, 1) * inside
+    bed = BED_FRACTION * np.clip(means.mean("fraction"), 0, 1)
+    fraction = bed * inside
     ill_posed = means.sums["ill_posed"].sum(axis=0) / means.samples.sum()
     seen = columns["t"][stage["average_row"] :]
     settings = dict(spacing=p.drum_diameter / p.cells, phases=BLOCKS, phaseStart=seen[0], period=seen[-1] - seen[0])
     fields = dict(
-        x=(x, "d"),
-        y=(y, "d"),
-        samples=(means.samples, "-"),
-        area_fraction=(fraction, "-"),
-        velocity=(means.velocity, "sqrt(g d)"),
-        pressure=(means.mean("pressure"), "rho g d"),
-        ill_posed=(means.mean("ill_posed"), "-"),
+        x=x,
+        y=y,
+        samples=means.samples,
+        area_fraction=fraction,
+        velocity=means.velocity,
+        pressure=means.mean("pressure"),
+        ill_posed=means.mean("ill_posed"),
     )
     folder.write("fields/continuum", fields, part_of_the_bed=BED_FRACTION, **settings)
-    bed = np.clip(flow.fraction, 0, 1) * inside
-    torque, beside = torque_of(x, fraction), "" if p.model == "continuum" else "continuum_"
-    folder.summarize(**{f"{beside}torque": (torque.value, "rho g d^3"), f"{beside}torque_err": torque.error})
+    summarize(p, folder, march, stage, columns, torque_of(x, bed * flow.openness))
+    last = np.clip(flow.fraction, 0, 1) * inside
     folder.summarize(
-        continuum_steps=flow.steps,
-        continuum_core_seconds=(march.seconds, "s"),
-        ill_posed_share=float((ill_posed * bed).sum() / bed.sum()),
+        ill_posed_share=float((ill_posed * last).sum() / last.sum()),
         continuum_area_drift=float(flow.area / area - 1),
-        continuum_steady=int(
-            is_steady(
-                columns["turn"][: stage["average_row"] + 1],
-                columns["centre_angle"][: stage["average_row"] + 1],
-                START_TURN,
-            )
-        ),
     )
     return blocks.blocks_of(x, y, fraction, means.velocity, means.samples, SURFACE_LEVEL["continuum"])
+
+
+def summarize(p, folder, march, stage, columns, torque):
+    """Store what the rows and the march itself say, and say on stderr if the flow still drifted."""
+    beside = "" if p.model == "continuum" else "continuum_"
+    start = stage["average_row"]
+    angle = block_mean(columns["centre_angle"][start:])
+    for name, mean in dict(torque=torque, centre_angle=angle).items():
+        folder.summarize(**{f"{beside}{name}": mean.value, f"{beside}{name}_err": mean.error})
+    steady = is_steady(columns["turn"][: start + 1], columns["centre_angle"][: start + 1], START_TURN)
+    if not steady:
+        print(
+            f"the continuum still drifted after {columns['turn'][start]:.3g} degrees, where its averages begin",
+            file=sys.stderr,
+        )
+    folder.summarize(
+        continuum_steps=march.flow.steps, continuum_core_seconds=march.seconds, continuum_steady=int(steady)
+    )

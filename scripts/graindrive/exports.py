@@ -6,6 +6,7 @@ A format with `.gz` behind its name writes the same text compressed, some three 
 import gzip
 import os
 import shutil
+import sys
 
 from . import text_exports, vtk_export
 from .postproc.reader import Run, RunError
@@ -30,16 +31,35 @@ def check(formats):
 def write(path, formats):
     """Write the frames, and for vtk the fields, of the run folder `path` in each of `formats`, each in one step.
 
-    Raises RunError for a run whose frames do not tell the box's period, as those of older versions.
+    Raises RunError for a run whose frames do not tell the box's period, as those of older versions, and for one that holds
+    nothing to write.
     """
     check(formats)
     for name in formats:
         run = Run(path)
+        if lacking := nothing_for(name, run):
+            raise RunError(lacking)
         if run.frame_names and "period" not in run.labels(f"frames/{run.frame_names[0]}")[1]:
             raise RunError(
                 f"{path} holds frames of an older version, without the box's period; run it again to export them"
             )
         WRITERS[name](run, units_of(run))
+
+
+def nothing_for(name, run):
+    """Return in words that a run holds nothing that the format `name` could write; "" where it does."""
+    if run.frame_names or name == "vtk" and run.names("fields"):
+        return ""
+    return f"{run.path} holds no frames{' and no fields' if name == 'vtk' else ''}: there is nothing for export={name}"
+
+
+def write_what_is_there(path, formats):
+    """Do as `write`, but say on stderr in place of raising where a run holds nothing for a format."""
+    run = Run(path)
+    lacking = {name: nothing_for(name, run) for name in formats}
+    for words in filter(None, lacking.values()):
+        print(f"graindrive: {words}", file=sys.stderr)
+    write(path, [name for name in formats if not lacking[name]])
 
 
 def units_of(run):

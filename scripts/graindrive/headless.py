@@ -40,7 +40,11 @@ def main(study):
 
 
 def end(code):
-    """End the program with this exit code, also where HDF5 could not write out a file: its own end would crash on that."""
+    """End the program with this exit code, also where HDF5 could not write out a file: its own end would crash on that.
+
+    The run has ended by now: a second Ctrl-C would only break what the interpreter still does, with a traceback.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()

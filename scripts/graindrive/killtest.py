@@ -34,6 +34,8 @@ STUDIES = {  # at smoke size, with what shows most
     "magnus": "scale=smoke travel=20 settle_travel=8 frames=4 spin_ratio=5".split(),
     "wiggle": "scale=smoke time=12 frames=6 fields=1".split(),
     "lift": "scale=smoke travel=12 frames=4 fields=1".split(),
+    "drum": "scale=smoke drum_diameter=24 froude=.01 start_turn=20 turn=20 frames=4 model=both cells=20 continuum_dt=.05".split(),
+    "shear": "scale=smoke grains=80".split(),
 }
 INTERVALS = (0.0, 0.1, 1.0)  # s between checkpoints
 TIMED = ("wall_s", "core_seconds", "peak_memory", "particle_steps_per_second", "continuum_core_seconds")

@@ -28,12 +28,10 @@ class Timing:
 MOST_STEPS = 1e10  # the papers' longest runs take 1e8
 
 
-def require_feasible(steps):
-    """UsageError for a run that would not end in a lifetime, saying how many steps it would take and the way out."""
+def require_feasible(steps, way_out="raise dt_factor or shorten the run"):
+    """UsageError for a run that would not end in a lifetime, saying how many steps it would take and the `way_out`."""
     if not steps <= MOST_STEPS:
-        raise UsageError(
-            f"the run would take {steps:.3g} steps, more than {MOST_STEPS:.0e}; raise dt_factor or shorten the run"
-        )
+        raise UsageError(f"the run would take {steps:.3g} steps, more than {MOST_STEPS:.0e}; {way_out}")
 
 
 def run_blocks(march, total_steps, block, on_block=None, *, label="run", pauses=(), on_pause=None, aim=None):

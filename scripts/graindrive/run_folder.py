@@ -217,6 +217,8 @@ class RunFolder:
         own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
         summary_file.write(self.path, told)
+        if lacking := without_value(self.summary):
+            self.say(f"the run gives no {', '.join(lacking)}: null in summary.json")
         self.finish_data("complete")
         run_remains.draw(self.path, self.figure, self.parameters.exports)
         with run_place.held(self.out.parent):
@@ -272,6 +274,11 @@ class RunFolder:
             self.series.close()
         if self.lock is not None:
             self.lock.close()
+
+
+def without_value(summary):
+    """Return the names of quantities that are None; standard errors, which short runs lack, are left out."""
+    return [name for name, value in summary.items() if value is None and not name.endswith("_err")]
 
 
 def plain(quantities):

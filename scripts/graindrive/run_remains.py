@@ -134,7 +134,7 @@ def draw(part, figure, formats):
     """
     if figure is not None:
         figure(part)
-    exports.write(part, formats)
+    exports.write_what_is_there(part, formats)
 
 
 def formats_of(stored):

@@ -102,6 +102,12 @@ class ShearCell:
         x, y = (places % columns + 0.5) * SPACING + noise[0], (places // columns + 0.5) * SPACING + noise[1]
         return x, y, rng.uniform(SMALLEST, LARGEST, self.grains) / 2, columns * SPACING, rows * SPACING
 
+    @property
+    def area_fraction_at_first(self):
+        """Area fraction of the lattice [-]."""
+        _, _, radii, width, height = self.lattice()
+        return float(np.pi * np.sum(radii**2) / (width * height))
+
     def drive(self, filled_height):
         """Return the drive; `filled_height` is the disks' area over the cell's width."""
         held = dict(pressure=self.pressure, pressureDamping=math.sqrt(MASS * self.k_n))

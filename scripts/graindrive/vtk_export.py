@@ -22,8 +22,9 @@ def export(frames, folder, body=None, units=()):
     frames' names to units. Grains are points with id, radius, velocity, spin and role, the driven body's disks among them
     with role 2: in ParaView, glyph by sphere, scale by radius, factor 2. Contacts are lines from centre to centre with
     ids i, j, slip, normal force (< 0 pulls) and tangential force (on i along z x n). The intruder is its outline as one
-    closed line; a single disk's is a circle with a spoke, which shows its turn. Spheres have spin, slip and tangential force
-    as vectors. A driven body among them is its beads, or, if it is a solid, a surface of polygons; one without ends is
+    closed line; a single disk's is a circle with a spoke, which shows its turn, a drum's the ring of its wall's disks.
+    Spheres have spin, slip and tangential force as vectors. A driven body among them is its beads, or, if it is a solid, a
+    surface of polygons; one without ends is
     closed at the box's sides. Raises UsageError without python3-vtk9.
     """
     folder = Path(folder)
@@ -76,7 +77,7 @@ def contact_lines(frame, units):
 
 def outline(frame, body):
     """Return the vtkPolyData of the driven body's outline in a frame."""
-    corners = body["outline"] if len(body.get("outline", ())) else circle_with_spoke(body)
+    corners = body["outline"] if len(body.get("outline", ())) else ring(body)
     places = frame.place(corners, body["beads"])
     cells = np.append(np.arange(len(places)), 0)[None, :]
     return polydata(in_plane(*places.T), "lines", cells, {}, on_points=False)
@@ -103,6 +104,14 @@ def area(outline):
     """Return the area within an outline (m, 2), > 0 for corners that go round counter-clockwise."""
     (x, y), (x_next, y_next) = outline.T, np.roll(outline, -1, axis=0).T
     return np.sum(x * y_next - x_next * y) / 2
+
+
+def ring(body):
+    """Return the outline (m, 2) of a body that has none: through its disks in turn, as of a drum's wall, or one disk's circle."""
+    beads = np.asarray(body["beads"], dtype=float)
+    if len(beads) == 1:
+        return circle_with_spoke(body)
+    return beads[np.argsort(np.arctan2(beads[:, 1], beads[:, 0]), kind="stable")]
 
 
 def circle_with_spoke(body):

@@ -14,9 +14,13 @@ from graindrive.study import loaded
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"
 STUDIES = {
-    path.stem: loaded(path) for path in sorted(FOLDER.glob("[dlmw]*.py"))
-}  # drum, lift, magnus, wiggle and its presets
-KEYS = [(study, key) for study in ("drum", "lift", "magnus", "wiggle") for key in STUDIES[study].parameters.__fields__]
+    path.stem: loaded(path) for path in sorted(FOLDER.glob("[dlmsw]*.py"))
+}  # drum, lift, magnus, shear, wiggle and its presets
+KEYS = [
+    (study, key)
+    for study in ("drum", "lift", "magnus", "shear", "wiggle")
+    for key in STUDIES[study].parameters.__fields__
+]
 
 SIZES = ["5e-324", "1e-300", "1e-160", "1e-30", "1e-29", "1e-12", "0", "-0", "1e12", "1e29", "1e30", "1e160", "1e308"]
 NO_NUMBERS = [
@@ -130,7 +134,7 @@ def arguments_of(study):
     return few.flatmap(lambda keys: st.tuples(*(extreme(fields[key]).map(f"{key}={{}}".format) for key in keys)))
 
 
-@pytest.mark.parametrize("study", ["drum", "lift", "magnus", "wiggle"])
+@pytest.mark.parametrize("study", ["drum", "lift", "magnus", "shear", "wiggle"])
 def test_no_combination_of_values_escapes_the_one_line_answer(study):
     @settings(max_examples=300)
     @given(arguments_of(study))

@@ -12,6 +12,7 @@ from graindrive.parameters import StudyParameters
 from graindrive.postproc import __main__ as command
 from graindrive.command_line import parameters_or_exit
 from graindrive.postproc.reader import Run
+from graindrive.run_folder import RunFolder
 from graindrive.study import Study
 
 
@@ -72,6 +73,16 @@ def test_a_finished_run_is_exported_by_the_command_and_draws_nothing(finished, c
     assert command.main([str(finished), "export=xyz,lammps"]) == 0
     assert (finished / "frames.xyz").exists() and (finished / "frames.lammpstrj").exists()
     assert not (finished / "figure.png").exists() and "writing frames.xyz, frames.lammpstrj" in capsys.readouterr().out
+
+
+def test_a_run_without_frames_writes_no_empty_files_and_says_so(tmp_path, capsys):
+    with RunFolder(StudyParameters(out=str(tmp_path / "run"), export="vtk,xyz"), study="toy") as folder:
+        folder.declare_series(t="s")
+        folder.append(t=1.0)
+    assert {p.name for p in (tmp_path / "run").iterdir()} == {"run.h5", "summary.json"}
+    assert "holds no frames: there is nothing for export=xyz" in capsys.readouterr().err
+    assert command.main([str(tmp_path / "run"), "export=vtk"]) == 2
+    assert "holds no frames and no fields: there is nothing for export=vtk" in capsys.readouterr().err
 
 
 def test_an_older_export_stays_until_the_new_one_is_whole(tmp_path, monkeypatch):

@@ -106,6 +106,20 @@ def test_a_single_disk_s_outline_is_its_circle_with_a_spoke_that_turns(tmp_path)
     assert np.allclose(points[:2], [[3, 4], [3, 4.25]]) and np.allclose(np.hypot(*(points[1:] - [3, 4]).T), 0.25)
 
 
+def test_a_body_of_many_disks_without_an_outline_is_the_ring_through_them(tmp_path):
+    """A drum's wall: eight disks on a circle of radius 2 about (3, 4), turned by 0.3, and listed in no order."""
+    order = np.array([3, 1, 4, 0, 5, 7, 2, 6])
+    angles = 2 * np.pi * order / 8
+    wall = dict(beads=2 * np.column_stack([np.cos(angles), np.sin(angles)]), bead_radius=np.array(0.5))
+    frame = bed()
+    frame.intruder["x"], frame.intruder["y"] = 3 + 2 * np.cos(angles + 0.3), 4 + 2 * np.sin(angles + 0.3)
+    export([frame], tmp_path, wall)
+    data, to_numpy = read(tmp_path / "intruder_0001.vtp")
+    line = np.array([data.GetCell(0).GetPoints().GetPoint(k)[:2] for k in range(9)])
+    assert np.allclose(np.hypot(*(line - [3, 4]).T), 2)
+    assert np.allclose(np.hypot(*np.diff(line, axis=0).T), 4 * np.sin(np.pi / 8)), "from neighbour to neighbour"
+
+
 def test_frames_stand_in_time_order_in_the_collections(tmp_path):
     export([bed(0.5), bed(1.5)], tmp_path, BODY)
     for kind in ("grains", "contacts", "intruder"):
