@@ -161,6 +161,7 @@ def measure(quick):
                 f" surface at {np.degrees(run.angle):.3f} degrees, torque {run.torque:.2e} rho g R^3",
                 file=sys.stderr,
             )
+    print(told_difference(own, other), file=sys.stderr)
     own_work, work = (cell_steps(SAME_GRID, grid[SAME_GRID]) for grid in grids)
     yield row("interFoam, grid", own_work / own[SAME_GRID].seconds, work / other[SAME_GRID].seconds)
     for cells, run in other.items():
@@ -170,6 +171,13 @@ def measure(quick):
             continue
         work = cell_steps(cells, grids[1][cells])
         yield row(f"interFoam, {100 * run.error:.1f} %", work / seconds, work / run.seconds)
+
+
+def told_difference(own, other):
+    """Return how far apart the two codes' u(z) are on the grid that both have and on the finest of each, as text."""
+    grids = [(SAME_GRID, SAME_GRID), (max(own), max(other))]
+    apart = [f"{100 * difference(own[a].u, other[b].u):.1f} % on {a} and {b} cells" for a, b in grids]
+    return f"u(z) of ours and of interFoam differ by {' and by '.join(apart)} across"
 
 
 def by_turns(our_grids, their_grids, rounds):
