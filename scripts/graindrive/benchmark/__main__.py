@@ -1,10 +1,10 @@
-"""Times GrainLoop against LAMMPS, LIGGGHTS and YADE's loop, alternating, and prints median ratios.
+"""Times GrainLoop against LAMMPS, LIGGGHTS and YADE's loop, the continuum against interFoam, alternating; prints median ratios.
 
 usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
 
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
   --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres),
-                continuum; without it all of them, in that order
+                continuum drum_newtonian; without it all of them, in that order
   --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache,
                 half as long again for lift190k
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
@@ -15,6 +15,8 @@ Spheres are those of the lift study: 20,000 and 190,000 settled, and the 20,000 
 compared after 300 steps, with friction and without it, before a ratio is printed.
 
 The continuum is the drum study's on 107^2 and 400^2 cells; its rates are cell-steps per second.
+drum_newtonian is a half full drum of a Newtonian fluid beside OpenFOAM's interFoam (Debian's package openfoam, which
+scripts/setup leaves to you: 0.4 GB): cell-steps per second on one grid, then costs at equal error of the velocity.
 
 One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
 whose kinetic energies differ after 300 steps (LIGGGHTS: the first portion) gets no ratio.
@@ -34,7 +36,7 @@ import numpy as np
 
 from .. import engines
 from ..study import house, loaded
-from . import continuum, lammps, layout, liggghts
+from . import continuum, drum_newtonian, lammps, layout, liggghts
 from .scenes import SCENES, scene, with_restitution
 
 # Largest relative difference of kinetic energy then, by law. Hertz: the same arithmetic from the same
@@ -49,6 +51,7 @@ SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05, "hertzRestitution": 1e-3}
 SAME_SPHERES, SAME_SMOOTH_SPHERES, SAME_SMOOTH_FLOW_IN_LIGGGHTS = 0.05, 1e-9, 1e-3
 SAME_ON_YADES_LOOP = 1e-5  # the same law, by the same formulas
 WARM_UP = 10  # steps
+FLOWS = (continuum.NAME, drum_newtonian.NAME)
 OWN_SHARE = (
     6  # GrainLoop's portions of spheres have so many times a peer's steps: beside it they are short, and show the cost
 )
@@ -277,6 +280,9 @@ def measure(name, quick, threads):
     if name == continuum.NAME:
         yield from continuum.measure(loaded(house()["drum"]), quick)
         return
+    if name == drum_newtonian.NAME:
+        yield from drum_newtonian.measure(quick)
+        return
     a_scene, plan = scene(name), PLAN[name]
     rounds, steps = portions(a_scene, quick)
     with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
@@ -313,7 +319,7 @@ def main(arguments=None):
         prog="scripts/bench", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     parser.add_argument("--json", action="store_true")
-    parser.add_argument("--scene", choices=sorted([*SCENES, continuum.NAME]))
+    parser.add_argument("--scene", choices=sorted([*SCENES, *FLOWS]))
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--kernel", choices=("avx512", "avx2", "portable"))
@@ -329,7 +335,7 @@ def main(arguments=None):
         if not shutil.which(chosen.lammps):
             parser.error(f"--lammps {chosen.lammps}: no such program")
         lammps.command = os.path.abspath(shutil.which(chosen.lammps))
-    names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else [*SCENES, continuum.NAME]
+    names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else [*SCENES, *FLOWS]
     if not chosen.json:
         print(
             "scene          law              precis. threads kernel   peer             ours M/s   theirs   ratio",
