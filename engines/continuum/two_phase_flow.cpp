@@ -232,16 +232,16 @@ void TwoPhaseFlow::find_viscosity()
 	shear_rate(g, rates, rate);
 	shear_rate_at_nodes(g, rates, node_rate);
 	extrapolate_ghosts(g, now.pressure);
-	constexpr double least_rate = 1e-12;  // below it every fluid here is at its largest viscosity
+	constexpr double least_rate = 1e-12;  // where a fluid with a yield stress is at its largest viscosity, and a Newtonian at its own
 	const std::size_t up = g.stride();
 	const Values& alpha = now.fraction;
 	std::visit(
 		[&](const auto& fluid) {
 			const auto mixed = [&](double part, double shear, double pressure) {
-				double eta = material.largest_viscosity;
-				if (part > 0 && shear > least_rate)
-					eta = std::min(eta, fluid.viscosity(shear, std::max(pressure, material.least_pressure)));
-				return part * eta + (1 - part) * material.gas_viscosity;
+				if (part <= 0) return material.gas_viscosity;
+				const double of_fluid =
+					fluid.viscosity(std::max(shear, least_rate), std::max(pressure, material.least_pressure));
+				return part * std::min(material.largest_viscosity, of_fluid) + (1 - part) * material.gas_viscosity;
 			};
 			g.for_cells(
 				[&](int, int, std::size_t c) { viscosity.cells[c] = mixed(clamped(alpha[c]), rate[c], now.pressure[c]); });

@@ -120,6 +120,17 @@ TEST(TwoPhaseFlow, a_full_drum_turns_as_a_rigid_body_with_the_pressure_of_gravit
 	}
 }
 
+TEST(TwoPhaseFlow, a_newtonian_fluid_at_rest_has_its_own_viscosity)
+{
+	Fluids fluids = granular();
+	fluids.rheology = laws::NewtonianFluid{ 50 };
+	fluids.largest_viscosity = 1e300;
+	FlowSettings how;
+	how.viscosity = Viscosity::full;
+	TwoPhaseFlow flow = Drum().flow(fluids, how, full_of_it);
+	EXPECT_EQ(flow.present_viscosity()[flow.grid().at(20, 20)], 50);
+}
+
 // ---- decay
 
 /// Largest error of u after `time` for a Taylor-Green vortex in a closed square that slips, n cells a side, steps of `share` spacing.

@@ -124,7 +124,6 @@ def ours(drum, cells, dt, end, **words):
         **dict(cells_x=count, cells_y=count, spacing=spacing, low_x=low, low_y=low, wall_spin=drum["spin"]),
         **dict(rheology="newtonian", shear_viscosity=drum["viscosity"], density=drum["density"]),
         **dict(gas_density=drum["gas_density"], gas_viscosity=drum["gas_viscosity"], gravity_y=-drum["gravity"]),
-        largest_viscosity=drum["viscosity"],  # that of the first step, of a fluid at rest
         **{**dict(time_step=dt, viscosity="full", transition=TRANSITION), **words},
     )
     start = time.process_time()
