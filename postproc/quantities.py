@@ -424,6 +424,13 @@ def unit_of(group, name, system):
     return found.unit
 
 
+def meaning_of(group, name):
+    """Return what a name in a group means; "" where nobody here knows."""
+    known = QUANTITIES.get(place_of(group), {})
+    found = known.get(name)
+    return found.meaning if found else ""
+
+
 def units(group, names, system):
     """Return {name: unit} of names, parted by spaces, in a group; KeyError for one that it does not have."""
     return {name: unit_of(group, name, system) for name in names.split() if QUANTITIES[place_of(group)][name]}

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import run_data, run_file, summary_file
+from . import quantities
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
 INTRUDER = -1  # in a contact's `i` or `j`; what is below stands for flat walls
@@ -116,7 +117,7 @@ class Run:
 
     `study` is the name of the study, `family` that of the study of which it is a preset. `parameters` and `provenance` are
     dicts of plain values, `constants` those of the study as numbers (empty in folders of older versions), `series` maps names
-    to 1D arrays of one length, `units` the names of series and parameters to their units, `summary` is the content of
+    to 1D arrays of one length, `units` the names of series and parameters to their units, `meanings` those of parameters, `summary` is the content of
     summary.json. A folder that is still being written shows its series and parameters, but no frames.
     """
 
@@ -139,6 +140,7 @@ class Run:
         self.parameters = {name: stored.value for name, stored in about.parameters.items()}
         self.constants = {name: stored.value for name, stored in about.constants.items()}
         self.units.update({name: stored.unit for name, stored in about.parameters.items()})
+        self.meanings = {name: stored.meaning for name, stored in about.parameters.items()}
         self.provenance = about.provenance
 
     @property
@@ -180,6 +182,35 @@ class Run:
         """Return ({dataset: unit}, {attribute: value}) of another group; both empty if it is not there."""
         with self.opened() as file:
             return run_file.labels_in(file[name]) if name in file else ({}, {})
+
+    def contents(self):
+        """Return what the run holds as a pandas DataFrame: where, name, value or size, unit, meaning; a row for each name.
+
+        Parameters, quantities of the summary with their errors, series, and the arrays of all groups of run.h5, of the frames
+        those of the first; what `quantities` does not know, of a study of one's own, has no meaning here.
+        """
+        import pandas as pd  # a third of a second that no other reading needs
+
+        rows = [
+            ("parameters", name, value, self.units[name], self.meanings[name])
+            for name, value in self.parameters.items()
+        ]
+        values, units = summary_file.parted(self.summary)
+        for name, value in values.items():
+            if not name.endswith("_err"):
+                error = values.get(f"{name}_err")
+                told = value if error is None else f"{value:.6g} +- {error:.2g}"
+                rows.append(("summary", name, told, units.get(name, ""), quantities.meaning_of("summary", name)))
+        rows += [
+            ("series", name, f"({len(column)},)", self.units.get(name, ""), quantities.meaning_of("series", name))
+            for name, column in self.series.items()
+        ]
+        with self.opened() as file:
+            rows += [
+                (group, name, str(shape), unit, quantities.meaning_of(group, name))
+                for group, name, shape, unit in run_file.arrays_listed(file)
+            ]
+        return pd.DataFrame(rows, columns=["where", "name", "value", "unit", "meaning"])
 
     def at(self, t, *names):
         """Return the named series at time `t`, interpolated linearly."""

@@ -232,15 +232,15 @@ void TwoPhaseFlow::find_viscosity()
 	shear_rate(g, rates, rate);
 	shear_rate_at_nodes(g, rates, node_rate);
 	extrapolate_ghosts(g, now.pressure);
-	constexpr double least_rate = 1e-12;  // where a fluid with a yield stress is at its largest viscosity, and a Newtonian at its own
+	constexpr double least_rate =
+		1e-12;  // where a fluid with a yield stress is at its largest viscosity, and a Newtonian at its own
 	const std::size_t up = g.stride();
 	const Values& alpha = now.fraction;
 	std::visit(
 		[&](const auto& fluid) {
 			const auto mixed = [&](double part, double shear, double pressure) {
 				if (part <= 0) return material.gas_viscosity;
-				const double of_fluid =
-					fluid.viscosity(std::max(shear, least_rate), std::max(pressure, material.least_pressure));
+				const double of_fluid = fluid.viscosity(std::max(shear, least_rate), std::max(pressure, material.least_pressure));
 				return part * std::min(material.largest_viscosity, of_fluid) + (1 - part) * material.gas_viscosity;
 			};
 			g.for_cells(

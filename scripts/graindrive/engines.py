@@ -1,6 +1,8 @@
 """Every engine, functor and function of the compiled module, with YADE found wherever Debian keeps it."""
 
+import contextlib
 import glob
+import io
 import os
 import sys
 
@@ -16,7 +18,8 @@ def find_yade():
         if folder not in sys.path:
             sys.path.append(folder)
     try:
-        import yade  # noqa: F401
+        with contextlib.redirect_stdout(io.StringIO()):  # it tells the version of Python
+            import yade  # noqa: F401
     except ModuleNotFoundError as error:
         raise ImportError(
             f"cannot import YADE ({error}); install Debian's package yade and use /usr/bin/python3"

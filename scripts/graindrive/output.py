@@ -1,6 +1,6 @@
 """Words on stdout and stderr that nobody has to read: a pipe that closes or a disk that is full does not end a run.
 
-`run_program` runs another Python program that way: YADE's, which writes before any script of ours.
+`run_program` runs another Python program that way, from its first line on.
 """
 
 import contextlib

@@ -132,6 +132,21 @@ def groups_in(group):
     return sorted(name for name, item in group.items() if isinstance(item, h5py.Group))
 
 
+def arrays_listed(file):
+    """Return [(group, name, shape, unit)] of the arrays in all groups but those of numbers; of the frames the first alone."""
+    found = []
+
+    def look(path, item):
+        group, _, name = path.rpartition("/")
+        told = group.split("/")[0] in ("parameters", "constants", "series", "")
+        later_frame = group.startswith("frames/") and not group.startswith(frame_group(1))
+        if isinstance(item, h5py.Dataset) and not told and not later_frame:
+            found.append((group, name, item.shape, plain(item.attrs.get("unit", ""))))
+
+    file.visititems(look)
+    return found
+
+
 def labels_in(group):
     """Return ({dataset: unit}, {attribute: value}) of a group; pure words have no unit."""
     units = {name: item.attrs["unit"] for name, item in group.items() if "unit" in item.attrs}

@@ -71,8 +71,8 @@ class Study:
     UsageError for values that do not go together, before anything runs. `observables` are what the study measures, `cost`
     what a run takes. `figure(path, frame=-1)` draws a finished run folder, `film(path)` films it. `report` (a
     `postproc.campaign.planned.Report`) holds what papers claim, and the figures on which campaigns test that. `constants`,
-    {name: Constant}, go into every run folder. `needs_yade=False` lets campaigns run it in plain Python. `family` is the
-    name of the study of which this one is a preset; by itself its own name.
+    {name: Constant}, go into every run folder. `family` is the name of the study of which this one is a preset; by itself its
+    own name.
     """
 
     name: str
@@ -86,7 +86,6 @@ class Study:
     film: Optional[Callable] = None
     report: Any = None
     constants: dict = field(default_factory=dict)
-    needs_yade: bool = True
     defaults: dict = field(default_factory=dict)
     family: str = ""
 

@@ -228,15 +228,14 @@ def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
 
 
 def test_readers_that_leave_do_not_end_the_run(place):
-    """As scripts/run starts YADE's program, which prints before any script of ours; by itself it would end."""
-    ours = "from graindrive.output import run_program; run_program()"
-    program = (sys.executable, "-P", "-c", ours, shutil.which("yade"))
-    process = place.start("out=a", program=program)
+    """As scripts/run starts a study."""
+    program = (sys.executable, "-P", "-c", "from graindrive.output import run_program; run_program()")
+    process = place.start("out=a", program=program, options=())
     process.stdout.close()
     process.stderr.close()
     assert process.wait(60) == 0 and place.names() == ["a"]
     with open("/dev/full", "w") as full:
-        command = [*program, "-n", "-x", str(TOY), "out=b"]
+        command = [*program, str(TOY), "out=b"]
         options = dict(cwd=place.work, env=place.environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         assert subprocess.run(command, stderr=full, timeout=60, **options).returncode == 0
     assert place.names() == ["a", "b"]

@@ -35,7 +35,7 @@ def run(p, folder):
     folder.summarize(left=x * (1 + np.random.default_rng(p.seed).normal(0, p.noise)), left_err=x * p.noise)
 
 STUDY = Study(
-    name="decay", parameters=Parameters, presets={"demo": {}, "paper": {}}, run=run, needs_yade=False,
+    name="decay", parameters=Parameters, presets={"demo": {}, "paper": {}}, run=run,
     observables=(Observable("left", "-", "what is left after 1 s", headline=True),), cost=Cost(steps, 1e6, "steps"),
 )
 if __name__ == "__main__":

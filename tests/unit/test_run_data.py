@@ -113,7 +113,9 @@ class TestFolder:
 
 def test_a_resumed_run_took_the_time_of_its_earlier_sessions_too(tmp_path, monkeypatch):
     now = SimpleNamespace(seconds=0.0)
-    monkeypatch.setattr(run_folder, "time", SimpleNamespace(monotonic=lambda: now.seconds))
+    monkeypatch.setattr(
+        run_folder, "time", SimpleNamespace(monotonic=lambda: now.seconds, process_time=lambda: 2 * now.seconds)
+    )
     for session, seconds in enumerate((40, 30)):
         parameters = StudyParameters(out=str(tmp_path / "a"), resume=session > 0)
         with pytest.raises(KeyboardInterrupt), RunFolder(parameters, study="toy") as folder:
@@ -124,7 +126,9 @@ def test_a_resumed_run_took_the_time_of_its_earlier_sessions_too(tmp_path, monke
         now.seconds += 1000  # nobody runs it
     with RunFolder(StudyParameters(out=str(tmp_path / "a"), resume=True), study="toy"):
         now.seconds += 25
-    assert json.loads((tmp_path / "a" / "summary.json").read_text())["wall_s"] == 40 + 30 + 25
+    summary = json.loads((tmp_path / "a" / "summary.json").read_text())
+    assert summary["wall_s"] == 40 + 30 + 25 and summary["core_seconds"] == 2 * summary["wall_s"]
+    assert 10 < summary["peak_memory"] < 1e5  # MB, of this Python
 
 
 def test_a_disk_that_fills_up_keeps_the_first_error_and_names_the_folder(tmp_path, monkeypatch, capsys):

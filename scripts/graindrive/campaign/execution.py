@@ -13,6 +13,7 @@ from ..errors import Interrupted, UsageError
 from ..run_place import damage, set_aside, stored_digest
 from . import plan_json
 
+PROGRAM = [sys.executable]  # that runs a study's file: YADE is a library there, which opens no port
 SNAKEFILE = Path(__file__).with_name("Snakefile")
 IN_THE_WAY = {getattr(errno, f"E{name}") for name in "ISDIR NOTDIR EXIST ACCES PERM ROFS NAMETOOLONG LOOP".split()}
 
@@ -43,13 +44,8 @@ def opened(folder, plan):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
-        plan_json.write(folder, plan, program(plan.study))
+        plan_json.write(folder, plan, PROGRAM)
         yield lock
-
-
-def program(study):
-    """Return the command that runs a study's file: YADE's program in batch mode on one core, or plain Python."""
-    return ["yade", "-n", "-x", "-j1"] if study.needs_yade else [sys.executable]
 
 
 def missing(folder, plan):

@@ -11,11 +11,12 @@ from ..campaign import execution
 from ..command_line import split
 from ..errors import UsageError, one_line
 from ..headless import guarded
-from ..parameter_values import convert, nearest
+from ..parameter_values import convert
 from ..postproc.tuning import held_out as held_out_report
 from ..postproc.tuning.report import write_report
 from ..provenance import code_version, cpu_model
-from ..study import duration, house, loaded
+from ..started import study_file
+from ..study import duration, loaded
 from . import book, choice, held_out, ladder
 from .search import MOST_SEEDS, Search
 from .trials import Trials
@@ -85,7 +86,7 @@ def tune(arguments):
     print(
         f"{NAME}: see {report}; {tuned.name} holds the levers chosen, for scripts/run {name} @{tuned}", file=sys.stderr
     )
-    return launch(file, scenes[0], tuned, study) if "--launch" in flags else 0
+    return launch(file, scenes[0], tuned) if "--launch" in flags else 0
 
 
 def check(words):
@@ -113,17 +114,6 @@ def check(words):
         file=sys.stderr,
     )
     return 0
-
-
-def study_file(name):
-    """Return the file of a study of this checkout, or the .py file that is named; UsageError for neither."""
-    if name.endswith(".py") and Path(name).is_file():
-        return Path(name).resolve()
-    known = house()
-    if name not in known:
-        hint = nearest(name, known, "did you mean ", "? ")
-        raise UsageError(f"there is no study '{one_line(name)}'; {hint}there are: {' '.join(known)}")
-    return known[name]
 
 
 def parted(study, words):
@@ -267,10 +257,10 @@ def write_parameters(path, search):
     return path
 
 
-def launch(file, scene, tuned, study):
+def launch(file, scene, tuned):
     """Run the study with the first scene's keys and the chosen levers; return its exit code."""
     keys = [f"{key}={int(v) if isinstance(v, bool) else v}" for key, v in scene.items()]
-    return subprocess.call([*execution.program(study), str(file), *keys, f"@{tuned}"])
+    return subprocess.call([*execution.PROGRAM, str(file), *keys, f"@{tuned}"])
 
 
 if __name__ == "__main__":
