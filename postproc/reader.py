@@ -117,8 +117,9 @@ class Run:
 
     `study` is the name of the study, `family` that of the study of which it is a preset. `parameters` and `provenance` are
     dicts of plain values, `constants` those of the study as numbers (empty in folders of older versions), `series` maps names
-    to 1D arrays of one length, `units` the names of series and parameters to their units, `meanings` those of parameters, `summary` is the content of
-    summary.json. A folder that is still being written shows its series and parameters, but no frames.
+    to 1D arrays of one length, `units` the names of series and parameters to their units, `meanings` those of parameters.
+    `summary` is the content of summary.json. A folder that is still being written shows its series and parameters, but no
+    frames.
     """
 
     def __init__(self, path):

@@ -1,4 +1,4 @@
-"""Runs started from Python: `graindrive.run("wiggle", shape="star.csv", period=3)` makes a run, or finds it, and returns it opened."""
+"""Runs started from Python: `run("wiggle", shape="star.csv", period=3)` makes a run, or finds it, and returns it opened."""
 
 import os
 import signal

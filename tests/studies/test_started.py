@@ -108,8 +108,6 @@ def test_an_interrupt_ends_the_run_which_keeps_its_data(place):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     command = [sys.executable, "-c", textwrap.dedent(asking)]
     pipes = dict(stdout=subprocess.PIPE, text=True, env=environment, cwd=place)
-    said = subprocess.run(
-        command, timeout=60, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler), **pipes
-    )
+    said = subprocess.run(command, timeout=60, preexec_fn=hear_interrupts, **pipes)
     assert said.stdout == "interrupted\n"
     assert list(Run(Path(place) / "cut.interrupted").series["count"]) == [0, 1, 2]
