@@ -1,7 +1,6 @@
 """Runs started from Python: `graindrive.run` on a study of a user's own."""
 
 import os
-import signal
 import subprocess
 import sys
 import textwrap
