@@ -4,7 +4,7 @@ A fluid of rheology mu(I) on a slope of angle theta has mu(I) = tan(theta), one 
 
     u(y) = u_0 + 2/3 I sqrt(phi g cos(theta))/d (h^3/2 - (h - y)^3/2)
 
-(GDR MiDi, Eur. Phys. J. E 14, 341 (2004)), with u_0 = 0 at the base. Grains are the disks of the drum and of the shear study: d to
+(GDR MiDi, Eur. Phys. J. E 14, 341 (2004)), with u_0 = 0 at the base. Grains are the disks of drum and shear study: d to
 1.2 d, spring and dashpot, friction 0.5, restitution 0.92; units are d, rho, g. The law is fitted in the middle of the layer:
 beside the base and beneath the surface other laws hold, for some d, so that u_0 is not 0.
 
