@@ -15,33 +15,47 @@ FEWEST_FRAMES = 2
 INCHES, DOTS_PER_INCH = 6.4, 150
 
 
-def film(path, prepared):
+class GrainFrames:
+    """The frames of a run as a sequence, each read when it is asked for."""
+
+    def __init__(self, run):
+        self.run = run
+
+    def __len__(self):
+        return len(self.run.frame_names)
+
+    def __getitem__(self, k):
+        if not 0 <= k < len(self):
+            raise IndexError(k)
+        return self.run.frame(k)
+
+
+def film(path, prepared, frames_of=GrainFrames):
     """Write animation.mp4 into the run folder `path`, in one step, and return its path; raises RunError where that cannot be.
 
-    `prepared(run)` returns a figure and a function of a frame that draws it there in place of the one before. A run has as
-    many frames as its key `frames` asked for. Every frame of the film costs about half a second.
+    `prepared(run)` returns a figure and a function of a frame that draws it there in place of the one before. `frames_of(run)`
+    returns the sequence of frames. A run has as many as its key `frames` asked for. Every frame of the film costs about half a
+    second.
     """
     run = Run(path)
-    if len(run.frame_names) < FEWEST_FRAMES:
-        raise RunError(
-            f"{path} holds {len(run.frame_names)} frames, a film needs more; run again with frames=200 or so"
-        )
+    frames = frames_of(run)
+    if len(frames) < FEWEST_FRAMES:
+        raise RunError(f"{path} holds {len(frames)} frames, a film needs more; run again with frames=200 or so")
     if not FFMpegWriter.isAvailable():
         raise RunError("a film needs ffmpeg; install Debian's package ffmpeg")
     target = Path(path) / "animation.mp4"
     with plt.rc_context(STYLE), written(target) as temporary:
-        shoot(run, temporary, prepared)
+        shoot(frames, temporary, *prepared(run))
     return target
 
 
-def shoot(run, target, prepared):
-    """Draw all frames of a run into the file `target`."""
-    figure, draw = prepared(run)
+def shoot(frames, target, figure, draw):
+    """Draw all frames into the file `target`."""
     writer = FFMpegWriter(fps=FRAMES_PER_SECOND, codec="libx264", extra_args=["-pix_fmt", "yuv420p", "-f", "mp4"])
     try:
         with writer.saving(figure, str(target), DOTS_PER_INCH):
-            for k in range(len(run.frame_names)):
-                draw(run.frame(k))
+            for frame in frames:
+                draw(frame)
                 writer.grab_frame()
     finally:
         plt.close(figure)

@@ -263,6 +263,13 @@ QUANTITIES = {
         **DISKS,
         **of("-", role="0 grain, 1 base, wall or lid (2, in exports, bead of the driven body)"),
     },
+    "flow_frames/NNNN": {
+        **of("time", t="attribute: time of the picture"),
+        **of("length", x="drum: centres of the continuum's cells, the axis at 0, as of the grains", y="the same"),
+        **of("-", area_fraction="solid fraction of the continuum, 0 in the wall"),
+        **of("velocity", velocity="of the continuum and of the gas above, (x, y)"),
+        **of("stress", pressure="of the continuum"),
+    },
     "frames/NNNN/intruder": {
         **DISKS,
         **of("length", centre="(x, y) of the driven body's centroid, among spheres (x, y, z)"),
@@ -406,7 +413,7 @@ def place_of(group):
     """Return the key of QUANTITIES that a group of run.h5 stands under: frames/0001/contacts is frames/NNNN/contacts."""
     parts = group.split("/")
     if len(parts) > 1:
-        parts[1] = {"frames": "NNNN", "fields": "NAME", "depth": "MODEL"}.get(parts[0], parts[1])
+        parts[1] = {"frames": "NNNN", "flow_frames": "NNNN", "fields": "NAME", "depth": "MODEL"}.get(parts[0], parts[1])
     return "/".join(parts)
 
 

@@ -45,7 +45,7 @@ from graindrive.errors import UsageError  # noqa: E402
 from graindrive.material import SpringDashpotMaterial  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.drum import blocks, figure  # noqa: E402
+from graindrive.postproc.drum import animation, blocks, figure  # noqa: E402
 from graindrive.postproc.drum.campaign import REPORT  # noqa: E402
 from graindrive.postproc.drum.flow import SURFACE_LEVEL, SURFACE_REACH  # noqa: E402
 from graindrive.postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady  # noqa: E402
@@ -109,7 +109,12 @@ class DrumParameters(StudyParameters):
         None, "d", "edge of the fields' bins; auto: 0.6, for drums over 200 d 1.2", gt=0, le=5
     )
     frames: int = quantity(
-        1, "-", "pictures of the drum that are kept, evenly in time, the last at the end", ge=1, le=9999, watches=True
+        1,
+        "-",
+        "pictures of grains and of the continuum that are kept, evenly in time, the last at the end",
+        ge=1,
+        le=9999,
+        watches=True,
     )
     largest_overlap: float = quantity(
         0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
@@ -391,7 +396,7 @@ def run(p, folder):
         before = drum_continuum.grains_before(folder)
         flows["dem"] = run_grains(p, folder, ratio) if before is None else before
     if p.model != "dem":
-        flows["continuum"] = drum_continuum.run(p, folder)
+        flows["continuum"] = drum_continuum.run(p, folder, frame_times(p))
     flows = {model: blocks.steady_flow(seen, p.drum_diameter, p.omega) for model, seen in flows.items()}
     keep(p, folder, flows)
 
@@ -406,6 +411,17 @@ def keep(p, folder, flows):
     if len(flows) > 1:
         value, error = blocks.dem_continuum_difference(flows["dem"], flows["continuum"], p.drum_diameter)
         folder.summarize(dem_continuum_difference=value, dem_continuum_difference_err=error)
+
+
+def frame_steps(p):
+    """Return the grains' steps at which pictures are taken, (frames,): even in time, the last at the end."""
+    last = (rows_of_start(p) + rows_of_window(p)) * block_steps(p)
+    return np.linspace(last, 0, p.frames, endpoint=False).round()[::-1]
+
+
+def frame_times(p):
+    """Return the times of the grains' pictures [sqrt(d/g)], those of the continuum's too; None without grains."""
+    return None if p.model == "continuum" else frame_steps(p) * time_step(p)
 
 
 def run_grains(p, folder, ratio):
@@ -430,8 +446,7 @@ def record(p, folder, march, stage):
     folder.declare_series(**SERIES)
     drive, around, ids = O.labeledEngine("drive"), O.labeledEngine("dem"), range(*stage["grains"])
     block, track = block_steps(p), recording.Track(folder)
-    due = np.linspace((rows_of_start(p) + rows_of_window(p)) * block, 0, p.frames, endpoint=False).round()[::-1]
-    frames = recording.Frames(folder, due, lambda: picture.taken(ids, [], stage["wall"]))
+    frames = recording.Frames(folder, frame_steps(p), lambda: picture.taken(ids, [], stage["wall"]))
 
     def sample(done):
         track.append(row_of(p, march, drive, ids))
@@ -533,6 +548,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=figure.draw,
+    film=animation.film,
     report=REPORT,
     constants={
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),

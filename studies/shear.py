@@ -10,6 +10,9 @@ Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (
 da Cruz et al., PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with
 shear_rate as a key of its own: there p follows, and with it I.
 
+The law holds up to I = 0.2; beyond, grains collide in pairs, and mu stops to grow. At the drum paper's area fraction the disks
+are jammed: what flows there are soft grains, whose mu is lower (studies/RESULTS.md).
+
 The pressure is a choice: grains count as stiff where k_n/P is large. 25 rho g d, that of a drum 38 d deep, makes it 6,280; runs
 at a quarter and four times the pressure, at equal I, show what that changes (studies/RESULTS.md).
 

@@ -78,14 +78,19 @@ def speed_limit(found, scale):
 
 def draw_surface(axes, surface, field, radius, colour):
     """Where the fraction falls to the surface's level, and the line that gives its angle."""
+    draw_level(axes, field, radius, colour)
+    if len(surface.x):
+        x = np.array([surface.x.min(), surface.x.max()])
+        axes.plot(x, surface.height + np.tan(surface.angle) * x, color=BLACK, linewidth=1.2)
+
+
+def draw_level(axes, field, radius, colour):
+    """Where the fraction falls to the surface's level."""
     cell = field.x[1] - field.x[0]  # of a continuum the last two before the wall belong to it
     beside_the_wall = np.hypot(field.x[None, :], field.y[:, None]) > 0.97 * radius - 1 - 2 * cell
     fraction = np.ma.masked_where(beside_the_wall, field.fraction)
     if fraction.count() and fraction.min() < field.surface_level < fraction.max():
         axes.contour(field.x, field.y, fraction, [field.surface_level], colors=[colour], linewidths=0.8)
-    if len(surface.x):
-        x = np.array([surface.x.min(), surface.x.max()])
-        axes.plot(x, surface.height + np.tan(surface.angle) * x, color=BLACK, linewidth=1.2)
 
 
 def frame_drum(axes, radius):

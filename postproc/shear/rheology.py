@@ -9,7 +9,10 @@ from ..measured import UNKNOWN, Measured
 
 START = 0.25, 0.5, 0.2  # mu_s, mu_2, I_0 that the search begins at
 FEWEST = 4  # points for three constants
-SLOWEST_GAS = 0.1  # I up to which phi counts as falling along a straight line
+LAST_STRAIGHT = 0.1  # I up to which phi and mu count as straight lines
+DENSEST_GAS = (
+    0.2  # I up to which mu(I) of a dense flow holds; at 0.3 phi is down to 0.68, grains collide in pairs, and mu falls
+)
 
 
 def friction_law(inertial, mu_s, mu_2, i_0):

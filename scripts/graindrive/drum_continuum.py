@@ -10,6 +10,11 @@ rest, after START_TURN at least.
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
 [sqrt(g d)]; pressure (blocks, ny, nx) [rho g d]; ill_posed (blocks, ny, nx), the share of the time in which the equations
 were ill-posed.
+
+It also keeps `frames` pictures of the flow, the groups `flow_frames/NNNN`: x, y as above, area_fraction (ny, nx),
+velocity (ny, nx, 2), pressure (ny, nx), in single precision. Their frame of reference is that of the grains' pictures: at
+rest, the drum's axis at the origin. With model=both they are taken at the times of the grains' pictures, as far as the
+continuum's run goes, and one at its end.
 """
 
 import sys
@@ -191,8 +196,11 @@ def grains_before(folder):
     )
 
 
-def run(p, folder):
-    """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or go on with it; return its `Blocks`."""
+def run(p, folder, times=None):
+    """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or go on with it; return its `Blocks`.
+
+    `times` [sqrt(d/g)] are those at which pictures are taken; without them they are even in time, the last at the end.
+    """
     flow = flow_of(p)
     march, area = FlowMarch(flow, "lower continuum_dt"), flow.area  # that of the start, of a resumed run too
     going_on = folder.resumed and folder.resumed.get("part") == PART
@@ -204,7 +212,7 @@ def run(p, folder):
     if going_on:
         stage.update(recording.load_stage(folder, march, ("average_row",)))
     announce(p, march)
-    return record(p, folder, march, stage, before, going_on, area)
+    return record(p, folder, march, stage, before, going_on, area, times)
 
 
 def announce(p, march):
@@ -228,8 +236,29 @@ def creep_over_turning(p):
     return p.static_friction * pressure / (p.largest_viscosity * GRAIN_MASS) / p.omega
 
 
-def record(p, folder, march, stage, before, going_on, area):
-    """March to the steady flow and over its averages, then store rows and fields; return the `Blocks`."""
+def frame_steps(p, times):
+    """Return the steps at which pictures are due, (n,) whole numbers."""
+    if times is None:
+        last = (rows_of(p, START_TURN) + rows_of(p, WINDOW)) * block_steps(p)
+        return np.linspace(last, 0, p.frames, endpoint=False).round()[::-1]
+    return np.round(np.asarray(times) / p.continuum_dt)
+
+
+def picture(p, flow):
+    """Return the flow's fields at this moment, in single precision: x, y (n,), area_fraction, pressure (ny, nx), velocity."""
+    x, y = grid_of(p)
+    fraction = solid_fraction(flow.fraction, flow)
+    fields = dict(area_fraction=fraction, velocity=flow.velocity, pressure=flow.pressure)
+    return dict(x=x, y=y, **{name: np.asarray(values, dtype="f4") for name, values in fields.items()})
+
+
+def solid_fraction(alpha, flow):
+    """Return the solid fraction (…, ny, nx) of volume fractions of the granular phase; the wall's transition counts as wall."""
+    return BED_FRACTION * np.clip(alpha, 0, 1) * (flow.openness >= 1)
+
+
+def record(p, folder, march, stage, before, going_on, area, times):
+    """March to the steady flow and over its averages, then store rows, pictures and fields; return the `Blocks`."""
     flow = march.flow
     means = FieldMeans(BLOCKS, flow.fraction.shape)
     track = Record(folder if going_on else NotResumed, means)
@@ -249,7 +278,9 @@ def record(p, folder, march, stage, before, going_on, area):
     block = block_steps(p)
     steps = (last_possible + window) * block
     label = f"a continuum turns by {START_TURN + WINDOW:g} degrees or more"
-    recording.run_sampled(folder, march, steps, block, sample, track=track, stage=stage, label=label, before=before)
+    frames = recording.FieldFrames(folder, frame_steps(p, times), lambda: picture(p, flow))
+    about = dict(track=track, frames=frames, stage=stage, label=label, before=before)
+    recording.run_sampled(folder, march, steps, block, sample, **about)
     if before:
         folder.note(steps=before)  # those of the grains, whose rate stands beside them
     return keep(p, folder, march, track, means, area, stage)
@@ -296,7 +327,7 @@ def keep(p, folder, march, track, means, area, stage):
     folder.write("continuum", columns)
     inside = flow.openness >= 1  # the layer in which fluid becomes wall counts as wall
     bed = BED_FRACTION * np.clip(means.mean("fraction"), 0, 1)
-    fraction = bed * inside
+    fraction = solid_fraction(means.mean("fraction"), flow)
     ill_posed = means.sums["ill_posed"].sum(axis=0) / means.samples.sum()
     seen = columns["t"][stage["average_row"] :]
     settings = dict(spacing=p.drum_diameter / p.cells, phases=BLOCKS, phaseStart=seen[0], period=seen[-1] - seen[0])

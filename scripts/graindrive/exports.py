@@ -75,10 +75,13 @@ def units_of(run):
 def write_vtk(run, units):
     """Write the folder `vtk`; an older one gives way to it when it is whole."""
     from .postproc import fields  # it draws, too: no run should wait for matplotlib
+    from .postproc.drum.flow_frames import FlowFrames
 
     target, temporary = run.path / "vtk", run.path / ".vtk"
     shutil.rmtree(temporary, ignore_errors=True)
     vtk_export.export(Frames(run), temporary, run.group("intruder"), units)
+    if len(flow := FlowFrames(run)):
+        vtk_export.export_flow(flow, flow.units, temporary)
     for name in run.names("fields"):
         vtk_export.export_fields(fields.read(run, name), name, temporary)
     shutil.rmtree(target, ignore_errors=True)

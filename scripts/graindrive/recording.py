@@ -45,7 +45,15 @@ class Frames:
 
     def __init__(self, folder, steps, picture):
         self.folder, self.picture, self.last = folder, picture, None
-        self.due = sorted({int(step) for step in steps})[folder.frames :]
+        self.due = sorted({int(step) for step in steps})[self.taken() :]
+
+    def taken(self):
+        """Return how many pictures the folder has; a resumed run has some at its start."""
+        return self.folder.frames
+
+    def store(self, t):
+        """Put a picture of the time `t` into the folder."""
+        self.folder.frame(t, *self.picture())
 
     def take_if_due(self, done, t):
         """Take a picture if one is due by the step `done`, at the time `t`."""
@@ -61,7 +69,22 @@ class Frames:
         """Take the next picture, of the time `t` that `done` steps make."""
         self.last = done
         self.due.pop(0)
-        self.folder.frame(t, *self.picture())
+        self.store(t)
+
+
+class FieldFrames(Frames):
+    """Pictures of a continuum's fields, as `Frames` of grains: `picture()` returns a dict of arrays.
+
+    They are the groups `flow_frames/0001` … of the run folder, each with its time as the attribute `t`.
+    """
+
+    GROUP = "flow_frames"
+
+    def taken(self):
+        return sum(name.startswith(f"{self.GROUP}/") for name in self.folder.items)
+
+    def store(self, t):
+        self.folder.write(f"{self.GROUP}/{self.taken() + 1:04d}", self.picture(), t=float(t))
 
 
 def load_stage(folder, march, names=()):

@@ -1,4 +1,4 @@
-"""Frames and fields of a run for ParaView: grains, contacts, the driven body as .vtp, fields as .vti, their times as .pvd."""
+"""Frames and fields of a run for ParaView: grains, contacts, driven body as .vtp, continuum, fields as .vti, times as .pvd."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from .vtk_files import image, in_plane, modules, polydata, write, write_collecti
 
 CORNERS = 72  # of the circle that stands for a single disk
 
-__all__ = ["export", "export_fields", "modules"]
+__all__ = ["export", "export_fields", "export_flow", "modules"]
 
 # Names in these files -> names in frames.
 GRAINS = {"id": "id", "radius": "r", "velocity": "vx", "spin": "spin", "role": "role"}
@@ -124,6 +124,19 @@ def circle_with_spoke(body):
 def renamed(units, names):
     """Return the units of the arrays of a file."""
     return {name: units[column] for name, column in names.items() if column in units}
+
+
+def export_flow(frames, units, folder):
+    """Write `flow_NNNN.vti` and `flow.pvd` of pictures of a continuum, in the frame of reference of the grains' files.
+
+    `frames` yields `graindrive.postproc.drum.flow_frames.FlowFrame`s, `units` maps their names to units.
+    """
+    entries = []
+    for number, frame in enumerate(frames, start=1):
+        file = f"flow_{number:04d}.vti"
+        write(image(frame.x, frame.y, frame.arrays, units), Path(folder) / file)
+        entries.append((frame.t, file))
+    write_collection(Path(folder) / "flow.pvd", entries)
 
 
 def export_fields(fields, name, folder):

@@ -16,10 +16,12 @@ from graindrive.continuum import FlowMarch
 from graindrive.errors import EngineError, Interrupted, UsageError
 from graindrive.postproc.drum import blocks, figure
 from graindrive.postproc.drum.flow import BED_FRACTION
+from graindrive.postproc.drum.flow_frames import FlowFrames
+from graindrive.postproc.drum.steady import centre_angle
 from graindrive.postproc.reader import Run
 
 COARSE = dict(model="continuum", drum_diameter=40, froude=0.02, cells=30, continuum_dt=0.05)
-QUICK = {**COARSE, "froude": 0.1, "cells": 20}
+QUICK = {**COARSE, "froude": 0.1, "cells": 20, "frames": 5}
 GRAINS = dict(drum_diameter=20, start_turn=2, turn=2, dt_factor=5)
 SLOW, FAST = (float(np.degrees(np.arctan(mu))) for mu in (0.246, 0.401))  # angles of repose of slow and of fast flow
 
@@ -113,6 +115,24 @@ def test_paraview_s_files_hold_the_fields_in_the_frame_of_the_grains(run):
     told = [float(part.split('"')[1]) for part in times.split("timestep=")[1:]]
     assert len(told) == drum_continuum.BLOCKS and min(np.diff(told)) > 0
     assert 0 < told[0] and told[-1] < run.group("continuum")["t"][-1]
+
+
+def test_pictures_of_the_flow_are_even_in_time_and_show_the_bed_of_their_moment(drum, whole):
+    """Their centre of mass is that of the rows, which stand a degree of turn apart or less; the last is of the end."""
+    run = Run(whole) if whole.exists() else carry_out(drum, whole, **QUICK)
+    frames, rows, p = FlowFrames(run), run.group("continuum"), run.parameters
+    assert len(frames) == 5
+    planned = np.radians(drum_continuum.START_TURN + drum_continuum.WINDOW) / p["angular_velocity"]
+    assert np.diff([frame.t for frame in frames]) == pytest.approx(planned / 5, rel=0.05)  # to whole steps and rows
+    assert frames[4].t <= rows["t"][-1]
+    for frame in frames:
+        weight = frame.arrays["area_fraction"].astype(float)
+        x, y = np.meshgrid(frame.x, frame.y)
+        angle = centre_angle(x, y, weight)
+        assert angle == pytest.approx(
+            np.interp(frame.t, rows["t"], rows["centre_angle"]), abs=0.5
+        )  # half a degree of turn
+        assert weight.max() <= np.float32(BED_FRACTION) and np.isfinite(frame.arrays["velocity"]).all()
 
 
 def test_the_figure_shows_where_the_equations_are_ill_posed(run):
@@ -210,6 +230,10 @@ def test_both_models_leave_their_flows_side_by_side_and_a_resumed_run_keeps_the_
     assert {"continuum_surface_angle_deg", "surface_angle_deg", "dem_continuum_difference"} <= found.keys()
     assert unexplained(whole) == []
     assert 5 < found["continuum_surface_angle_deg"] < 40
+    times = [whole.frame(k).t for k in range(len(whole.frame_names))]
+    seen = [frame.t for frame in FlowFrames(whole)]
+    assert len(seen) == len(times) == 5  # the continuum's run is longer: its pictures are of the grains' times
+    assert seen == pytest.approx(times, abs=0.5 * QUICK["continuum_dt"] + 1e-9)
     assert whole.provenance["n_grains"] == drum.DrumParameters(**keys).count
     go_on, built = stop_after(monkeypatch, 50), drum.build
     with pytest.raises(Interrupted):
