@@ -1,13 +1,14 @@
 """Report of a drum campaign: Figs. 2 to 6, 8 and 9 of Oba, Otsuki (2025); Fig. 7, the rheology, is the shear study's."""
 
 from ..campaign.planned import PlannedFigure, Report
-from . import claims, levers, plots
+from . import claims, constants, levers, plots
 
 TITLE = "Drum: the layer that flows down a turning drum"
 SWEEPS = {
     "profiles": "a few drum_diameter and angular_velocity, model=both for the comparison",
     "thickness": "several drum_diameter and froude from 1e-4 to 1e-2",
     "collapse": "several drum_diameter at one froude or two",
+    "constants": constants.SWEEP,
     "levers": levers.SWEEP,
 }
 
@@ -69,6 +70,7 @@ FIGURES = (
         claims.surface_claims,
         plots.surfaces,
     ),
+    constants.FIGURE,
     levers.FIGURE,
 )
 
