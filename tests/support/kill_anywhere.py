@@ -20,11 +20,11 @@ import h5py
 import numpy as np
 
 from graindrive import headless
+from graindrive.killtest import TIMED
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.study import Study
 
 STEPS = 5
-TIMED = ("wall_s", "particle_steps_per_second")
 killer = ctypes.CDLL(os.environ["LD_PRELOAD"])
 place = Path(sys.argv[1])
 
