@@ -95,16 +95,13 @@ def fitted(rows, model):
 def collapse_claims(campaign, rows):
     """At equal Fr u/(Omega D) against z/D is the same for all D: each drum's against that of the largest."""
     claims = []
-    for froude, group in equal_froude(rows):
+    for same, group in equal_froude(rows):
         *smaller, largest = sorted(group["drum_diameter"].unique())
         for model, size in itertools.product(MODELS, smaller):
             one, other = (mean_profile(campaign, drum(group, d), model) for d in (largest, size))
             if one and other:
                 found = Measured(*scaled_difference(one, other))
-                text = (
-                    f"{NAMES[model]}, Fr {froude:.3g}: u/(ΩD) against z/D is the same at D {size:g} and {largest:g};"
-                    " norm of the difference over that of u"
-                )
+                text = f"{NAMES[model]}, {same}: D {size:g} and {largest:g} have one u/(ΩD); norm of the difference"
                 pair = group[group["drum_diameter"].isin([size, largest])]
                 claims.append(claim(pair, text, "Eq. 56, Fig. 5", "≈ 0", found, below(CONSISTENT)))
     return claims

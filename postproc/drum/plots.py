@@ -71,7 +71,7 @@ def collapse(campaign, rows, claims):
     """Fig. 5: u/(ΩD) against z/D, a panel for each Fr, a colour for each D."""
     groups = list(equal_froude(rows))
     figure, axes = canvas(1, max(1, len(groups)), claims, width=2 * figures.COLUMN_WIDTH, height=2.6)
-    for panel, (froude, group) in zip(axes[0], groups):
+    for panel, (same, group) in zip(axes[0], groups):
         for k, diameter in enumerate(sorted(group["drum_diameter"].unique())):
             for model in MODELS:
                 found = mean_profile(campaign, drum(group, diameter), model)
@@ -80,7 +80,7 @@ def collapse(campaign, rows, claims):
                     style = look(k, model, label_of(model, f"D = {diameter:g} d"))
                     panel.errorbar(z, u, np.nan_to_num(error), **style)
         panel.plot([0, 0.5], [0, -0.5], color=BLACK, linewidth=0.8)
-        panel.set(xlabel="z/D", title=f"Fr = {froude:.3g}", xlim=(-0.05, 0.5))
+        panel.set(xlabel="z/D", title=same, xlim=(-0.05, 0.5))
         panel.legend()
     share_y(axes[0])
     axes[0, 0].set_ylabel("u/(ΩD)")

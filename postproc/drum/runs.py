@@ -105,10 +105,12 @@ def field_of(campaign, rows, model):
 
 
 def equal_froude(rows):
-    """Yield (Fr, its rows) for the Froude numbers at which a sweep has two drums or more."""
-    for froude, group in rows.groupby(rows["froude"].astype(float).round(9), sort=True):
+    """Yield (Fr and, where a sweep has several, I_0 in words, the rows) of those at which a sweep has two drums or more."""
+    keys = [rows["froude"].astype(float).round(9), rows["inertial_scale"].astype(float)]
+    for (froude, scale), group in rows.groupby(keys, sort=True):
         if group["drum_diameter"].nunique() > 1:
-            yield float(froude), group
+            told = f", I_0 {scale:g}" if rows["inertial_scale"].nunique() > 1 else ""
+            yield f"Fr {froude:.3g}{told}", group
 
 
 def drum(rows, diameter):
