@@ -11,6 +11,7 @@ from graindrive.postproc.drum.flow import analysed
 
 KEYS = dict(model="both", drum_diameter=60.0, angular_velocity=0.01, froude=3e-3, seed=1)
 KEYS.update(continuum_dt=0.02, cells=75, largest_viscosity=8e4, tolerance=1e-5)
+KEYS.update(static_friction=0.246, dynamic_friction=0.401, inertial_scale=0.133)
 
 
 class MadeUpDrums:

@@ -1,12 +1,13 @@
 """The report of a drum campaign and the figure of a run on made-up runs with known laws."""
 
+import numpy as np
 import pytest
 from made_up_drums import MadeUpDrums, make_drums
 
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.campaign.verdicts import Verdict
-from graindrive.postproc.drum import claims, figure
+from graindrive.postproc.drum import claims, constants, figure
 from graindrive.postproc.drum.campaign import REPORT, SWEEPS
 from graindrive.postproc.reader import Run
 from graindrive.study import house, loaded
@@ -65,6 +66,31 @@ def test_profiles_collapse_at_equal_froude_number(folder, thicker, verdict):
     assert len(found) == 3 and {c.verdict for c in found} == {verdict}
 
 
+def test_each_drum_is_compared_with_the_largest_at_each_rate(folder):
+    drums = dict(drum_diameter=[60.0, 120.0, 240.0], froude=[3e-3], model=["continuum"], inertial_scale=[0.133, 1e6])
+    laws = MadeUpDrums(thicker=0.08)
+    laws.thickness = lambda keys, model: 0.11 + (
+        0.1 * np.log2(keys["drum_diameter"] / 60) if keys["inertial_scale"] < 1 else 0
+    )
+    found = claims_of(folder, laws, "collapse_claims", **drums)
+    assert [(c.text.split(";")[0], c.verdict) for c in found] == [
+        (f"continuum, Fr 0.003, I_0 {scale}: D {size} and 240 have one u/(ΩD)", verdict)
+        for scale, verdict in (("0.133", Verdict.NOT_REPRODUCED), ("1e+06", Verdict.REPRODUCED))
+        for size in (60, 120)
+    ]
+
+
+def test_the_continuum_is_compared_with_the_grains_for_each_set_of_constants(folder):
+    laws, grid = MadeUpDrums(), dict(
+        drum_diameter=[60.0], froude=[3e-3], model=["dem", "continuum"], static_friction=[0.246, 0.3]
+    )
+    laws.thickness = lambda keys, model: 0.11 + 0.1 * (model == "continuum" and keys["static_friction"] > 0.25)
+    campaign = Campaign.of(make_drums(folder, laws, dict(constants=grid)))
+    found = constants.constants_claims(campaign, campaign.sweep("constants"))
+    assert ["μ_s 0.246" in c.text for c in found] == [True, False]
+    assert [c.verdict for c in found] == [Verdict.REPRODUCED, Verdict.NOT_REPRODUCED]
+
+
 def test_fraction_and_place_of_the_surface(folder):
     fraction = claims_of(folder, MadeUpDrums(), "fraction_claims")
     assert fraction[0].verdict is Verdict.REPRODUCED
@@ -75,8 +101,8 @@ def test_fraction_and_place_of_the_surface(folder):
 def test_a_report_has_all_figures_and_claims(folder):
     text = write_report(Campaign.of(make_drums(folder, MadeUpDrums(), SPEEDS)).folder, REPORT).read_text()
     assert all((folder / "figures" / f"made_up-{planned.name}.png").exists() for planned in REPORT.figures)
-    # 6 differences, 2 rigid rotations, 3 collapses of two models, 3 claims on h/D of two models, fraction, 2 surfaces
-    assert text.count("**reproduced**") == 6 + 2 + 6 + 6 + 1 + 2
+    # 6 differences, 2 rigid rotations, 3 collapses of two models, 6 differences again for the one set of constants, 3 claims on h/D of two models, fraction, 2 surfaces
+    assert text.count("**reproduced**") == 6 + 2 + 6 + 6 + 6 + 1 + 2
 
 
 def test_claims_on_grains_alone_speak_of_no_continuum(folder):
