@@ -101,7 +101,8 @@ def test_fraction_and_place_of_the_surface(folder):
 def test_a_report_has_all_figures_and_claims(folder):
     text = write_report(Campaign.of(make_drums(folder, MadeUpDrums(), SPEEDS)).folder, REPORT).read_text()
     assert all((folder / "figures" / f"made_up-{planned.name}.png").exists() for planned in REPORT.figures)
-    # 6 differences, 2 rigid rotations, 3 collapses of two models, 6 differences again for the one set of constants, 3 claims on h/D of two models, fraction, 2 surfaces
+    # 6 differences, 2 rigid rotations, 3 collapses of two models, 6 differences again for the one set of constants,
+    # 3 claims on h/D of two models, fraction, 2 surfaces
     assert text.count("**reproduced**") == 6 + 2 + 6 + 6 + 6 + 1 + 2
 
 
