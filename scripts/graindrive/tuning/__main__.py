@@ -78,7 +78,7 @@ def tune(arguments):
             raise UsageError(
                 f"no run of the reference ended: {next(iter(trials.failed.values()), 'the budget is too small for one')}"
             )
-        command = shlex.join(["scripts/tune", name, *words])
+        command = shlex.join(["scripts/tune", name, *(w for w in words if not w.startswith(("out=", "cores=")))])
         measured = measured_book(search, command)
         book.write(out / "measured.json", measured)
         tuned = write_parameters(out / "tuned.yaml", search)
@@ -106,7 +106,7 @@ def check(words):
             file = study_file(made.study)
             folder = out / made.file.removesuffix(".json")
             points += held_out.points_of(loaded(file), file, made, folder, count, cores, number + 1)
-        command = shlex.join(["scripts/tune", "check", *words])
+        command = shlex.join(["scripts/tune", "check", *(w for w in words if not w.startswith(("out=", "cores=")))])
         where = f"`{command}`; code {code_version()}, on {cpu_model()}."
         report = held_out_report.write_report(out, points, where)
     print(
