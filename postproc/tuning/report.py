@@ -3,6 +3,7 @@
 import math
 
 import pandas as pd
+from matplotlib.ticker import LogLocator, StrMethodFormatter
 
 from ...tuning.words import in_words, shown
 from ...whole_files import write_text
@@ -93,6 +94,9 @@ def drawn(search, rows):
             label="one run's error, 90 %: best at the cost",
         )
     axes.set(xscale="log", yscale="log", xlabel="core-seconds of a run", ylabel=f"change of {name} [%]")
+    axes.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
+    for set_formatter in (axes.xaxis.set_major_formatter, axes.xaxis.set_minor_formatter):
+        set_formatter(StrMethodFormatter("{x:g}"))
     axes.annotate(
         "reference", (reference["core_seconds"], axes.get_ylim()[1]), fontsize=6, rotation=90, va="top", ha="right"
     )
