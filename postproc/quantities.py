@@ -79,7 +79,7 @@ QUANTITIES = {
         **of(
             "s",
             wall_s="wall time of the run, interrupted parts included",
-            core_seconds="processor time of all threads of the run, interrupted parts included",
+            core_seconds="processor time of all threads and programs of the run, interrupted parts included",
         ),
         **of("MB", peak_memory="largest memory that the program had in use"),
         **of("", shape="wiggle: the key"),

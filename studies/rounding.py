@@ -159,10 +159,15 @@ def scene(p):
 
 
 def colliding(p):
-    """Return disks on a square lattice in a periodic square, with velocities even in [-1, 1] along each axis."""
+    """Return disks on a square lattice in a periodic square, velocities even in [-1, 1] along each axis, opposite in pairs.
+
+    So the momentum is 0, to the last bit; of an odd number of disks the last one rests.
+    """
     rng, columns = random.Random(p.seed), math.isqrt(p.taken()["grains"])
     places = [(short((k + 0.5) * SPACING), short((j + 0.5) * SPACING)) for k in range(columns) for j in range(columns)]
-    moving = [(*place, short(rng.uniform(-SPEED, SPEED)), short(rng.uniform(-SPEED, SPEED)), 0) for place in places]
+    given = [[short(rng.uniform(-SPEED, SPEED)) for _axis in "xy"] for _pair in range(len(places) // 2)]
+    velocities = [(sign * vx, sign * vy) for vx, vy in given for sign in (1, -1)] + [(0.0, 0.0)]
+    moving = [(*place, *velocity, 0) for place, velocity in zip(places, velocities)]
     return dict(side=side(p), gravity=0.0, disks=moving)
 
 

@@ -41,12 +41,10 @@ def horizon(t, distance):
 
 def growing(distance):
     """Return the slice of rows in which a distance (n,) grows: from `TRANSIENT` times the first one to `PREDICTED`."""
-    seen = np.flatnonzero(distance > 0)
-    if not len(seen):
-        return slice(0, 0)
-    first = int(np.argmax(distance >= TRANSIENT * distance[seen[0]]))
+    seen = distance[distance > 0]
+    grown = np.flatnonzero(distance >= TRANSIENT * seen[0]) if len(seen) else ()
     beyond = np.flatnonzero(distance >= PREDICTED)
-    return slice(first, int(beyond[0]) if len(beyond) else len(distance))
+    return slice(int(grown[0]) if len(grown) else len(distance), int(beyond[0]) if len(beyond) else len(distance))
 
 
 def growth_rate(t, distance):
@@ -55,7 +53,7 @@ def growth_rate(t, distance):
     The rate of a stretch of a trajectory differs from that of others: the error says by how much.
     """
     rows = growing(distance)
-    if len(t[rows]) < FEWEST:
+    if len(t[rows]) < FEWEST or not distance[rows].all():
         return UNKNOWN
     growth = block_mean(np.diff(np.log(distance[rows])) / np.diff(t[rows]))
     return Measured(growth.value, growth.error)

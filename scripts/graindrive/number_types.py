@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from . import signals
 from .errors import EngineError, UsageError, one_line
 
 SCRIPT = Path(__file__).with_name("rounding_script.py")
@@ -72,7 +73,8 @@ class Rows:
 def run(name, scene, rows_file):
     """Run a scene (the dict that rounding_script.py reads, without its loop) with the numbers `name`; write `rows_file`.
 
-    The program runs in a folder of its own, without YADE's console and ports, and is killed if anything interrupts this call.
+    The program runs in a folder of its own, without YADE's console and ports. It is killed if anything interrupts this call, and
+    ends by itself at its next sample if this process was killed.
     Raises UsageError if it is missing, EngineError with its last words if it fails.
     """
     kind = TYPES[name]
@@ -83,11 +85,14 @@ def run(name, scene, rows_file):
         command = ["/usr/bin/python3", "-P", SCRIPT.name]
         with open(rows_file, "w") as rows, open(folder / "errors", "w") as errors:
             places = dict(cwd=folder, stdin=subprocess.DEVNULL, stdout=rows, stderr=errors)
-            program = subprocess.Popen(command, env=environment(kind.build), start_new_session=True, **places)
+            program = None
             try:
+                with signals.deferred():
+                    program = subprocess.Popen(command, env=environment(kind.build), start_new_session=True, **places)
                 code = program.wait()
             except BaseException:
-                end(program, rows_file)
+                if program is not None:
+                    end(program, rows_file)
                 raise
         if code:
             said = (folder / "errors").read_text().strip().splitlines()[-1:] or ["it said nothing"]

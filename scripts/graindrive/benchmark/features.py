@@ -184,17 +184,22 @@ def measure(worker, save, rounds, steps, features=FEATURES):
     `worker(path, **settings)` starts a process that runs a saved scene (`Ours`), `save(scene, name)` returns the path. Both
     sides run by turns, each round gives one ratio of processor times.
     """
-    base = lattice()
-    for number, feature in enumerate(features):
-        plain, changed_one = feature.against(base), feature.scene(base)
-        one = worker(save(changed_one, f"with_{number}.npz"), **feature.settings)
-        other = worker(save(plain, f"without_{number}.npz"))
-        try:
-            one.warm_up(), other.warm_up()
-            pairs = [(one.run(steps), other.run(steps)) for _ in range(rounds)]
-        finally:
-            one.close(), other.close()
-        yield row(feature, len(base["x"]) * steps, pairs)
+    base, without = lattice(), {}
+    try:
+        for number, feature in enumerate(features):
+            if feature.against not in without:  # one process for all features that are compared with the same scene
+                without[feature.against] = worker(save(feature.against(base), f"without_{number}.npz"))
+                without[feature.against].warm_up()
+            one = worker(save(feature.scene(base), f"with_{number}.npz"), **feature.settings)
+            try:
+                one.warm_up()
+                pairs = [(one.run(steps), without[feature.against].run(steps)) for _ in range(rounds)]
+            finally:
+                one.close()
+            yield row(feature, len(base["x"]) * steps, pairs)
+    finally:
+        for other in without.values():
+            other.close()
 
 
 def row(feature, particle_steps, pairs):
