@@ -9,7 +9,7 @@ from ..statistics import block_mean
 
 DIGITS = 180  # more than any of the numbers has
 PREDICTED = 1e-2  # distance up to which a run predicts where the grains are [d]
-TRANSIENT = 30  # times its first distance, until which a run's distance turns towards the direction that grows [-]
+FIRST_CONTACTS = 2.0  # until which disks touch for the first time, and distances turn towards what grows [t_0]
 FEWEST = 4  # rows that a rate or an order is taken from
 SKIPPED = 0.1  # share of a run at its start that the power of time leaves out
 
@@ -39,12 +39,10 @@ def horizon(t, distance):
     return float(t[beyond[0]]) if len(beyond) else float("nan")
 
 
-def growing(distance):
-    """Return the slice of rows in which a distance (n,) grows: from `TRANSIENT` times the first one to `PREDICTED`."""
-    seen = distance[distance > 0]
-    grown = np.flatnonzero(distance >= TRANSIENT * seen[0]) if len(seen) else ()
-    beyond = np.flatnonzero(distance >= PREDICTED)
-    return slice(int(grown[0]) if len(grown) else len(distance), int(beyond[0]) if len(beyond) else len(distance))
+def growing(t, distance):
+    """Return which rows (n,) a rate is taken from: behind `FIRST_CONTACTS`, until the distance first reaches `PREDICTED`."""
+    beyond = np.cumsum(distance >= PREDICTED) > 0
+    return (t >= FIRST_CONTACTS) & ~beyond & (distance > 0)
 
 
 def growth_rate(t, distance):
@@ -52,8 +50,8 @@ def growth_rate(t, distance):
 
     The rate of a stretch of a trajectory differs from that of others: the error says by how much.
     """
-    rows = growing(distance)
-    if len(t[rows]) < FEWEST or not distance[rows].all():
+    rows = growing(t, distance)
+    if rows.sum() < FEWEST:
         return UNKNOWN
     growth = block_mean(np.diff(np.log(distance[rows])) / np.diff(t[rows]))
     return Measured(growth.value, growth.error)

@@ -72,9 +72,8 @@ def made_up(name, scene, file):
         for steps in range(scene["every"] + 1, scene["steps"] + 1, scene["every"]):
             t = steps * scene["dt"]
             off = 0.0 if name == number_types.TRUTH else 2.0 ** -number_types.TYPES[name].bits * np.exp(RATE * t)
-            place = [
-                f"{x + 0.0:.20f}" if not off else str(distances.Decimal(x) + distances.Decimal(off)) for x in start
-            ]
+            with localcontext(prec=60):
+                place = [str(Decimal(x) + Decimal(off)) for x in start]
             velocity = rng.normal(size=len(start)).tolist()
             rows.write(json.dumps(dict(steps=steps, place=place, velocity=velocity)) + "\n")
 
