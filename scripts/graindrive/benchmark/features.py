@@ -188,9 +188,9 @@ def measure(worker, save, rounds, steps, features=FEATURES):
     try:
         for number, feature in enumerate(features):
             if feature.against not in without:  # one process for all features that are compared with the same scene
-                without[feature.against] = worker(save(feature.against(base), f"without_{number}.npz"))
+                without[feature.against] = worker(save(feature.against(base), f"without_{number}.npz"), onStep=False)
                 without[feature.against].warm_up()
-            one = worker(save(feature.scene(base), f"with_{number}.npz"), **feature.settings)
+            one = worker(save(feature.scene(base), f"with_{number}.npz"), onStep=False, **feature.settings)
             try:
                 one.warm_up()
                 pairs = [(one.run(steps), without[feature.against].run(steps)) for _ in range(rounds)]
