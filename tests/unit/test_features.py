@@ -1,9 +1,12 @@
 """A scene without a feature gives what it gives with the feature set to nothing: bit for bit, or to what `FEATURES` states."""
 
+import json
+
 import numpy as np
 import pytest
 from yade import O
 
+from graindrive.benchmark import __main__ as benchmark
 from graindrive.benchmark import features, ours
 from graindrive.benchmark.features import BITS, FEATURES, crowd
 
@@ -78,3 +81,13 @@ def test_a_ratio_is_the_median_of_rounds_by_turns():
     found = features.row(FEATURES[0], 1e9, pairs)
     assert (found["ratio"], found["lowest"], found["highest"]) == (3, 2, 4)
     assert (found["with_it_ns"], found["without_it_ns"]) == (8, 2)
+
+
+def test_the_command_prints_features_as_json_and_refuses_another_scene(monkeypatch, capsys):
+    made = [dict(feature="gravity", ratio=1.0)]
+    monkeypatch.setattr(features, "measure", lambda start, save, rounds, steps: iter(made))
+    assert benchmark.main(["--features", "--json", "--quick"]) == 0
+    assert json.loads(capsys.readouterr().out) == made
+    with pytest.raises(SystemExit) as ending:
+        benchmark.main(["--features", "--scene", "bed10k"])
+    assert ending.value.code == 2 and "leave --scene bed10k away" in capsys.readouterr().err
