@@ -79,7 +79,7 @@ QUANTITIES = {
         **of(
             "s",
             wall_s="wall time of the run, interrupted parts included",
-            core_seconds="processor time of all threads of the run, interrupted parts included",
+            core_seconds="processor time of all threads and programs of the run, interrupted parts included",
         ),
         **of("MB", peak_memory="largest memory that the program had in use"),
         **of("", shape="wiggle: the key"),
@@ -388,6 +388,20 @@ QUANTITIES = {
         **of("velocity", u="velocity down the slope in a square; nan where nothing is"),
         **of("-", fraction="solid fraction in a square; of a continuum the volume fraction of its granular phase"),
     },
+    "velocities": {
+        **of("-", velocity="rounding study: middles of the bins of v_x and v_y over their root mean square"),
+        **of(
+            "-",
+            longdouble="rounding study: density of the velocities in YADE with 64 bits",
+            double="rounding study: density in GrainLoop, double precision",
+            single="rounding study: density in GrainLoop, single precision",
+        ),
+    },
+    "averages": {
+        **of("m d^2/t_0^2", kinetic_energy="rounding study: of a disk, with 64 bits, double, single"),
+        **of("m/t_0^2", pressure="rounding study: by motion and contacts, with 64 bits, double, single"),
+        **of("-", kurtosis="rounding study: <v_x^4>/<v_x^2>^2, with 64 bits, double, single"),
+    },
     "phase": {**of("T", phase="middle of the part of the cycle, t/T"), **of("velocity", vy="V_y in this part")},
     "table.csv": {
         **of("", run="name of the run's folder below runs/", sweeps="sweeps that want the run"),
@@ -407,6 +421,38 @@ QUANTITIES["summary"].update(
         for name in OF_BOTH_MODELS.split()
     }
 )
+
+# Of the rounding study: the same of each kind of numbers.
+OF_NUMBERS = dict(
+    float128="YADE with 113 bits",
+    longdouble="YADE with 64 bits",
+    yade_double="YADE with 53 bits",
+    double="GrainLoop, double precision",
+    single="GrainLoop, single precision",
+)
+OF_EACH_NUMBER = {
+    **of("d", drift="root mean square distance from 150 digits at the end of the comparison"),
+    **of("1/t_0", lyapunov_rate="d ln(distance)/dt while it grows, chaotic scene"),
+    **of("t_0", horizon="when the distance reaches 0.01 d, chaotic scene"),
+    **of("-", drift_order="power of time by which the distance grows, regular scene"),
+}
+OF_AVERAGED_NUMBER = {
+    **of("m d^2/t_0^2", kinetic_energy="mean kinetic energy of a disk"),
+    **of("m/t_0^2", pressure="mean pressure by motion and contacts"),
+    **of("-", kurtosis="mean of <v_x^4>/<v_x^2>^2"),
+}
+for number, words in OF_NUMBERS.items():
+    told = {**OF_EACH_NUMBER, **(OF_AVERAGED_NUMBER if number in ("longdouble", "double", "single") else {})}
+    QUANTITIES["summary"].update(
+        {
+            f"{name}_{number}": Quantity(known.unit, f"rounding, {words}: {known.meaning}")
+            for name, known in told.items()
+        }
+    )
+    QUANTITIES["series"][f"distance_{number}"] = Quantity("d", f"rounding, {words}: distance from 150 digits")
+for number in ("double", "single"):
+    text = f"rounding, {OF_NUMBERS[number]}: largest difference of the averages from 64 bits, in its standard errors"
+    QUANTITIES["summary"][f"averages_apart_{number}"] = Quantity("-", text)
 
 
 def place_of(group):

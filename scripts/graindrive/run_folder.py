@@ -46,7 +46,7 @@ class RunFolder:
         self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
         self.series, self.frames, self.items, self.lock, self.made = None, 0, {}, None, []
         self.resumed, self.start, self.wall_before = None, time.monotonic(), 0.0
-        self.start_processor, self.processor_before = time.process_time(), 0.0
+        self.start_processor, self.processor_before = processor_time(), 0.0
 
     def declare_series(self, **units):
         """Name the time series and their units, once, before the first `append`."""
@@ -110,8 +110,8 @@ class RunFolder:
 
     @property
     def core_seconds(self):
-        """Processor time of all threads of the run so far [s], of a resumed one with what led to its checkpoint."""
-        return self.processor_before + time.process_time() - self.start_processor
+        """Processor time of all threads and programs of the run so far [s], of a resumed one with what led to its checkpoint."""
+        return self.processor_before + processor_time() - self.start_processor
 
     def note_cost(self):
         """Put into the provenance what the run has cost: wall time, processor time, and the largest memory of this process."""
@@ -274,6 +274,12 @@ class RunFolder:
             self.series.close()
         if self.lock is not None:
             self.lock.close()
+
+
+def processor_time():
+    """Return the processor time of this process, all its threads, and of the programs that it ran and that have ended [s]."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def without_value(summary):

@@ -1,10 +1,12 @@
 """Times GrainLoop against LAMMPS, LIGGGHTS and YADE's loop, the continuum against interFoam, alternating; prints median ratios.
 
-usage: scripts/bench [--json] [--scene NAME] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
+usage: scripts/bench [--json] [--scene NAME | --features] [--quick] [--threads N] [--kernel NAME] [--lammps COMMAND]
 
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
   --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres),
                 continuum drum_newtonian; without it all of them, in that order
+  --features    what friction, gravity, walls, the ledger, measures, the third dimension, ... cost GrainLoop in one scene: time
+                per particle-step with each over that without it, median, lowest and highest of the rounds
   --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache,
                 half as long again for lift190k
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
@@ -36,7 +38,7 @@ import numpy as np
 
 from .. import engines
 from ..study import house, loaded
-from . import continuum, drum_newtonian, lammps, layout, liggghts
+from . import continuum, drum_newtonian, features, lammps, layout, liggghts
 from .scenes import SCENES, scene, with_restitution
 
 # Largest relative difference of kinetic energy then, by law. Hertz: the same arithmetic from the same
@@ -313,6 +315,23 @@ def print_row(entry):
     print(columns.format(**{**entry, "ours": entry["ours"] / 1e6, "theirs": entry["theirs"] / 1e6}), flush=True)
 
 
+def print_features(quick, as_json):
+    """Measure what features cost; print them line by line or as JSON; return the exit status."""
+    rounds, steps, rows = (3, 100, []) if quick else (9, 300, [])
+    if not as_json:
+        print(features.HEADING, flush=True)
+    with tempfile.TemporaryDirectory(prefix="graindrive-bench-") as folder:
+        start = functools.partial(Ours, which="grain")
+        for found in features.measure(start, lambda a_scene, name: save(a_scene, folder, name), rounds, steps):
+            rows.append(found)
+            if not as_json:
+                print(features.line(found), flush=True)
+    if as_json:
+        json.dump(rows, sys.stdout, indent=1)
+        print()
+    return 0
+
+
 def main(arguments=None):
     """Entry of scripts/bench; returns the exit status."""
     parser = argparse.ArgumentParser(
@@ -320,6 +339,7 @@ def main(arguments=None):
     )
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--scene", choices=sorted([*SCENES, *FLOWS]))
+    parser.add_argument("--features", action="store_true")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--kernel", choices=("avx512", "avx2", "portable"))
@@ -335,6 +355,10 @@ def main(arguments=None):
         if not shutil.which(chosen.lammps):
             parser.error(f"--lammps {chosen.lammps}: no such program")
         lammps.command = os.path.abspath(shutil.which(chosen.lammps))
+    if chosen.features:
+        if chosen.scene:
+            parser.error(f"--features has a scene of its own; leave --scene {chosen.scene} away")
+        return print_features(chosen.quick, chosen.json)
     names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else [*SCENES, *FLOWS]
     if not chosen.json:
         print(

@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from .. import engines
-from . import layout
+from . import features, layout
 from .layout import DRIVEN, FREE, WALL
 
 DRUM_MASS = 1e9  # wall and intruder of a drum are as good as infinitely heavy
@@ -75,6 +75,35 @@ def grain_loop(a_scene, **settings):
     )
     O.engines = [loop]
     return loop
+
+
+def with_features(a_scene, settings):
+    """Put GrainLoop into O.engines with `settings` of its own, and what else `benchmark.features` names; return it.
+
+    binned: forces by angle on the driven disk at every step; averaged: fields around it every so many steps; walls: "near",
+    half a diameter beyond the outer grains, or "far".
+    """
+    from yade import O
+
+    settings = dict(settings)
+    binned, averaged, walls = (settings.pop(key, None) for key in ("binned", "averaged", "walls"))
+    loop = grain_loop(a_scene, **settings)
+    measures = []
+    if binned:
+        measures.append(engines.ContactForceBinner(body=driven(a_scene)))
+    if averaged:
+        fields = dict(low=(-5, -5, 0), high=(5, 5, 0), spacing=0.5, width=1.0, kernel="gaussian")
+        measures.append(engines.FieldAverager(body=driven(a_scene), every=averaged, **fields))
+    O.engines = [*measures, loop]
+    if walls:
+        for side, position in features.walls_of(a_scene, away=features.FAR if walls == "far" else 0.0).items():
+            loop.setWall(side, position=position)
+    return loop
+
+
+def driven(a_scene):
+    """Return the id of the driven disk: every disk is a body, in the scene's order."""
+    return int(np.flatnonzero(a_scene["kind"] == DRIVEN)[0])
 
 
 def yade_loop(a_scene):
@@ -148,15 +177,12 @@ def serve(path, which, settings):
     with np.load(path) as file:
         a_scene = {name: file[name] for name in file.files}
     bodies(a_scene)
-    begins_on_step, binned = settings.pop("onStep", True), settings.pop("binned", False)
-    loop = grain_loop(a_scene, **settings) if which == "grain" else None
+    begins_on_step = settings.pop("onStep", True)
+    loop = with_features(a_scene, settings) if which == "grain" else None
     if loop is None:
         yade_loop(a_scene)
     elif begins_on_step:
         loop.beginOnStep()
-    if binned:
-        driven = int(np.flatnonzero(a_scene["kind"] == DRIVEN)[0])  # every disk is a body, in the scene's order
-        O.engines = [engines.ContactForceBinner(body=driven), loop]
     for line in sys.stdin:
         steps = int(line)
         wall, cpu = time.perf_counter(), time.process_time()
