@@ -155,8 +155,8 @@ REPORT = Report(
             SWEEP,
             "What was tried, what came out, the bound",
             "How much of its bound every case uses up, on either loop and in either precision; a point right of the line is a"
-            " wrong answer. `right`: the closed form's number; `guard`: a check stopped the run where it should and named the cause;"
-            " `bound`: the number is that of a limit that users must know. Numbers are ratios, or errors of ratios.",
+            " wrong answer. `right`: the closed form's number; `guard`: a check stopped the run where it should and named the"
+            " cause; `bound`: the number is that of a limit that users must know. Numbers are ratios, or errors of ratios.",
             outcome_claims,
             draw_outcomes,
         ),
