@@ -92,7 +92,9 @@ def shear(setting):
         trials["strain"].append(block * steps * SHEAR_STEP * rate)
         trials["closure"].append(abs(energy["residual"]) / energy["workOfCell"])
         trials["work"].append(energy["workOfCell"])
-    sentence = f"{setting.strain:g} strains between sliding sides, I = 0.3: residual of the energy ledger over the cell's work"
+    sentence = (
+        f"{setting.strain:g} strains between sliding sides, I = 0.3: residual of the energy ledger over the cell's work"
+    )
     tolerance = 1e-3 if setting.single else 1e-9
     return judged(
         RIGHT, max(trials["closure"]), 0.0, tolerance, "energy; the bound of the ledger's tests", sentence, trials

@@ -45,7 +45,9 @@ def no_gravity(setting, *, dimensions):
     x, v, w = state_of(ids[0])
     errors = [*(x[:2] / (np.array(velocity) * steps * dt) - 1), *(v[:2] / velocity - 1), w / spin - 1, x[2], v[2]]
     worst = float(np.abs(errors).max())
-    sentence = f"free flight without gravity, {steps} steps: largest part by which place, velocity or spin are off x₀ + vt"
+    sentence = (
+        f"free flight without gravity, {steps} steps: largest part by which place, velocity or spin are off x₀ + vt"
+    )
     return judged(RIGHT, worst, 0.0, steps * EPS, "round-off of n additions, nε", sentence)
 
 

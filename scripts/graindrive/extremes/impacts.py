@@ -54,7 +54,9 @@ def restitution(setting, *, dimensions):
             trials["given"].append(e)
             trials["error"].append(v2[0] - v1[0] - e)
     worst = max(trials["error"], key=abs)
-    sentence = f"restitution {RESTITUTIONS[0]} to 1, linear and Hertz contacts of {4 * STEPS} steps: error furthest from 0"
+    sentence = (
+        f"restitution {RESTITUTIONS[0]} to 1, linear and Hertz contacts of {4 * STEPS} steps: error furthest from 0"
+    )
     # The dashpot sees the velocity half a step before: omega dt/2 times at most b (1 - b^2)... below 2 omega dt.
     tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)
     source = "e = exp(−π b/√(1 − b²)); Antypov, Elliott 2011 for Hertz"
@@ -96,7 +98,9 @@ def friction(setting, *, dimensions):
         trials["expected"].append(-SURFACE if sticks else SURFACE - 2 * inverse * mu)
     errors = np.subtract(trials["found"], trials["expected"])
     worst = float(errors[np.abs(errors).argmax()])
-    sentence = "μ 0 to 10, surfaces meet at 1.2 of the normal velocity: error of their velocity afterwards, furthest from 0"
+    sentence = (
+        "μ 0 to 10, surfaces meet at 1.2 of the normal velocity: error of their velocity afterwards, furthest from 0"
+    )
     tolerance = 5 * CONTACT + (SINGLE if setting.single else 0)  # what the contact turns, and what it sees of the step
     source = "v_t − 2μ(m/m_t)v_n while slipping, −v_t where it sticks (equal frequencies)"
     return judged(RIGHT, worst, 0.0, tolerance, source, sentence, trials)
@@ -116,7 +120,9 @@ def spin(setting, *, dimensions):
         trials["ratio"].append(ratio)
         trials["friction"].append(v2[1] / v2[0])
     worst = max(trials["friction"], key=lambda f: abs(f / mu - 1)) / mu
-    sentence = "spin ratio ωR/v 10 to 1000, μ = 0.5: impulse along the surface over μ times the normal one, furthest from 1"
+    sentence = (
+        "spin ratio ωR/v 10 to 1000, μ = 0.5: impulse along the surface over μ times the normal one, furthest from 1"
+    )
     return judged(
         RIGHT, worst, 1.0, 5 * CONTACT + (SINGLE if setting.single else 0), "Coulomb: J_t = μ J_n", sentence, trials
     )
@@ -287,7 +293,9 @@ def stiffness(setting, *, dimensions):
         trials["stiffness"].append(k_n)
         trials["error"].append((v2[0] - v1[0]) / speed - e)
     worst = max(trials["error"], key=abs)
-    sentence = f"springs of {STIFFNESSES[0]:g} to {STIFFNESSES[-1]:g}, overlap 0.01 d: restitution less 0.5, furthest from 0"
+    sentence = (
+        f"springs of {STIFFNESSES[0]:g} to {STIFFNESSES[-1]:g}, overlap 0.01 d: restitution less 0.5, furthest from 0"
+    )
     tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)
     return judged(RIGHT, worst, 0.0, tolerance, "units: e does not depend on k", sentence, trials)
 
