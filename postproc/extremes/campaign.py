@@ -81,6 +81,7 @@ def draw_steps(campaign, rows, _claims):
         if "share" not in trials:
             continue
         place = names.setdefault(row["case"].removeprefix("step_").replace("_", " "), len(names))
+        place += 0.15 if row["loop"] == "grain" else -0.15
         looks = dict(linestyle="", markersize=3.5, color=BLUE if row["loop"] == "grain" else VERMILLION)
         for k, (ratio, share) in enumerate(zip(trials["ratio"], trials["share"])):
             mark = dict(marker=MARKERS[k], markerfacecolor="none" if row["loop"] == "grain" else looks["color"])
@@ -99,7 +100,8 @@ def draw_steps(campaign, rows, _claims):
         )
     for k, direction in enumerate(("against the normal", "sliding")):
         right.plot([], [], MARKERS[k], color=GREY, markersize=3.5, label=direction)
-    right.legend(fontsize=5, loc="lower left")
+    right.set_ylim(-1.6, len(names) - 0.5)
+    right.legend(fontsize=5, loc="lower center", ncol=2)
     return figure
 
 
