@@ -42,7 +42,7 @@ from graindrive.postproc.extremes.figure import draw  # noqa: E402
 from graindrive.study import Cost, Observable, Study  # noqa: E402
 
 LONG = "bound_pair"  # cases that hear `pair_steps`
-STEP_SECONDS, STRAIN_SECONDS, OTHERS = 6e-7, 0.1, 2.0  # of one core, measured
+STEP_SECONDS, STRAIN_SECONDS, OTHERS = 6e-7, 0.06, 2.0  # of one core, measured
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

@@ -127,6 +127,31 @@ def stable_step(setting, *, law, dimensions):
     return judged(word, worst if stable else math.nan, 1.0, TOLERANCE, SOURCE, sentence, trials)
 
 
+ALLOWED = 0.3  # an overlap that a user may allow [R]
+
+
+def deep_step(setting, *, dimensions):
+    """GrainLoop's own check is at 0.1 R, however deep grains may be pressed: what it takes over the step of an allowed 0.3 R."""
+    law = LAWS["hertz_restitution"]
+    expected = theory(law, dimensions, ALLOWED, False)
+
+    def taken(ratio):
+        def build():
+            place([Grain((0, 0)), Grain((2, 0))], law, setting, ratio * expected, dimensions, largestOverlap=ALLOWED)
+            scene.fast_loop()()
+
+        return not said_by(build)
+
+    found = largest(taken, 0.5, 2.0, RESOLUTION)
+    stable = stays(law, setting, dimensions, 0.99 * found * expected, ALLOWED, sliding=False)
+    sentence = (
+        f"Hertz's law with largestOverlap = 0.3: step that GrainLoop takes over the critical one of a pair pressed so deep, which"
+        f" {'stays at rest' if stable else 'then swings up'}; the studies' own checks are at their largest_overlap"
+    )
+    source = "stiffness as √δ: (0.3/0.1)^(1/4); GrainLoop checks at 0.1 R"
+    return judged(BOUND, found, (ALLOWED / DEEP) ** 0.25, TOLERANCE, source, sentence)
+
+
 # Crystal --------------------------------------------------------------------------------------------------------------
 
 SQUEEZED = 1e-3  # overlap of its grains [d]
@@ -182,7 +207,7 @@ def stable_crystal(setting, *, dimensions):
         f"a crystal of {CONTACTS[dimensions]} contacts is stable up to this part of the pair's critical step, of which GrainLoop"
         f" allows all; 4 % beyond, with e = 0.9: {told}"
     )
-    source = f"ω² = {EDGE[dimensions]} k/m at the edge of its zone, 2/ω; 2/{EDGE[dimensions]} of the pair's"
+    source = f"ω² = {EDGE[dimensions]} k/m at the edge of its zone, 2 k/m of a pair"
     return judged(BOUND, found, expected, 0.01, source, sentence)
 
 

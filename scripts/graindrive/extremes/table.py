@@ -27,6 +27,7 @@ def step_cases():
 
 CASES = {
     **step_cases(),
+    **in_both("step_deep", "stable step of deep contacts", steps.deep_step, loops=GRAIN, precisions=DOUBLE),
     **in_both("step_crystal", "largest stable step of a crystal", steps.stable_crystal, loops=GRAIN),
     "step_sticking_crystal_2d": Case(
         "largest stable step of a crystal that sticks", steps.stable_crystal_that_sticks, GRAIN
