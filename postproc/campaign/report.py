@@ -78,11 +78,14 @@ def cost(table):
     """Return in words what the runs of a table cost, on which processors, by which code."""
     processors = ", ".join(sorted(set(table["cpu"].dropna())))
     versions = ", ".join(sorted(set(table["code_version"].dropna())))
-    return f"{core_seconds(table):.0f} core-seconds, {work(table)}, on {processors}; code {versions}"
+    parts = [f"{core_seconds(table):.0f} core-seconds", work(table), f"on {processors}; code {versions}"]
+    return ", ".join(filter(None, parts))
 
 
 def work(table):
-    """Return in words the work of the runs of a table: particle-steps, or of a study without grains its steps."""
+    """Return in words the work of the runs of a table: particle-steps, of a study without grains its steps, "" if none counts."""
+    if "steps" not in table:
+        return ""
     if "n_grains" in table:
         return f"{(table['steps'] * table['n_grains']).sum():.3g} particle-steps"
     return f"{table['steps'].sum():.3g} steps"

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from . import engines
 
+MOST_CONTACTS = 6  # of a disk among disks of about its size
+
 
 @dataclass(frozen=True)
 class HertzHistoryMaterial:
@@ -31,6 +33,14 @@ class HertzHistoryMaterial:
         the step holds for every contact that it lets pass.
         """
         return critical_time_step_of_disks(self, smallest_radius, overlap)
+
+    def bed_time_step(self, smallest_radius):
+        """Return the step [s] above which a bed may shake by itself: none is known, for stiffness goes with the overlap.
+
+        A bed's overlaps are far below the one of `critical_time_step`: at a smaller overlap delta the step may be
+        (overlap/delta)^(1/4) times as long, which is more than six contacts take away where delta < overlap/36.
+        """
+        return math.inf
 
     def force_between(self, radius, overlap):
         """Return the force [N] of resting disks of `radius` [m] that overlap by `overlap` of it."""
@@ -71,6 +81,10 @@ class SpringDashpotMaterial:
         """Return the largest stable step [s] of two smallest disks; the law is linear, so `overlap` [R] plays no part."""
         return critical_time_step_of_disks(self, smallest_radius, overlap)
 
+    def bed_time_step(self, smallest_radius):
+        """Return the step [s] up to which no bed shakes by itself, whatever its overlaps: that of a disk with six contacts."""
+        return critical_time_step_of_disks(self, smallest_radius, 1e-3, MOST_CONTACTS)
+
     def force_between(self, radius, overlap):
         """Return the force [N] of resting disks of `radius` [m] that overlap by `overlap` of it."""
         return self.terms(radius, overlap)["elastic"]
@@ -89,9 +103,13 @@ class SpringDashpotMaterial:
         )
 
 
-def critical_time_step_of_disks(material, smallest_radius, overlap):
-    """Return the largest stable step [s] of two smallest disks of a material, along the normal and sliding past each other."""
-    mass = material.density * math.pi * smallest_radius**2
+def critical_time_step_of_disks(material, smallest_radius, overlap, contacts=1):
+    """Return the largest stable step [s] of smallest disks of a material, against the normal and sliding past each other.
+
+    With several `contacts` a disk each contact has that part of the masses. Where all are stable with their parts, so is the
+    bed: 4M - 2 dt C - dt^2 K is a sum over contacts, positive if each of its terms is (Irons, Treharne 1971, with dashpots).
+    """
+    mass = material.density * math.pi * smallest_radius**2 / contacts
     at = material.terms(smallest_radius, overlap)
     normal = engines.critical_step(at["stiffness"], at["dashpot"], mass / 2)
     if material.friction == 0:

@@ -200,7 +200,8 @@ def fast_loop():
 def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
     """Return dt/dt_crit of two smallest grains overlapping by `overlap` radii; UsageError if it is over 1.
 
-    A body of mass `lightest` below a grain's asks for less: frequencies grow as 1/sqrt(mass).
+    A body of mass `lightest` below a grain's asks for less: frequencies grow as 1/sqrt(mass). So does a grain of several
+    contacts; above the step of its `material.bed_time_step` a bed would warm up by itself without a word, which is refused too.
     """
     grain = material.density * math.pi * smallest_radius**2
     critical = material.critical_time_step(smallest_radius, overlap) * math.sqrt(min(1, lightest / grain))
@@ -210,7 +211,17 @@ def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
             f"time step {dt:.3g} is over the critical {critical:.3g} {pair};"
             f" lower dt_factor, to {0.9 * critical / dt:.2g} times its value or less"
         )
+    require_bed_bears(dt, material.bed_time_step(smallest_radius))
     return dt / critical
+
+
+def require_bed_bears(dt, most):
+    """UsageError for a time step over that of a grain with several contacts."""
+    if dt > most:
+        raise UsageError(
+            f"time step {dt:.3g} is over {most:.3g}, above which a grain with six contacts may swing up: the bed would warm up by"
+            f" itself; lower dt_factor, to {0.99 * most / dt:.2g} times its value or less"
+        )
 
 
 def save(path):

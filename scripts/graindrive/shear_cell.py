@@ -10,6 +10,7 @@ import numpy as np
 
 from . import engines, grain_loop, scene
 from .errors import UsageError
+from .material import MOST_CONTACTS, SpringDashpotMaterial, critical_time_step_of_disks
 
 DENSITY = 1.0  # rho
 MASS = math.pi / 4  # of a disk of diameter d [rho d^2]
@@ -51,22 +52,22 @@ class ShearCell:
 
     def check(self, dt, largest_overlap):
         """Return the time step over the critical one of two smallest disks; UsageError over 1 or for grains that are too soft."""
-        mass = MASS * SMALLEST**2
-        at = engines.terms_of_law("springDashpot", self.given(), largest_overlap / 2, SMALLEST / 4, mass / 2)
-        critical = engines.critical_step(at["stiffness"], at["dashpot"], mass / 2)
-        if self.friction > 0:
-            critical = min(
-                critical, engines.critical_step(at["tangential_stiffness"], at["tangential_dashpot"], mass / 6)
-            )
+        critical = self.critical_time_step()
         if dt > critical:
             raise UsageError(
                 f"time step {dt:.3g} is over the critical {critical:.3g} of two smallest grains; lower dt_factor"
             )
+        scene.require_bed_bears(dt, self.critical_time_step(MOST_CONTACTS))
         if self.pressure > (most := self.k_n * largest_overlap / 4):
             raise UsageError(
                 f"pressure={self.pressure:g} presses grains too far into each other; take at most {most:.3g}, or raise stiffness"
             )
         return dt / critical
+
+    def critical_time_step(self, contacts=1):
+        """Return the largest stable step of two smallest disks; with several `contacts` as `critical_time_step_of_disks`."""
+        grains = SpringDashpotMaterial(self.k_n, self.k_n * 2 / 7, self.restitution, self.friction, DENSITY)
+        return critical_time_step_of_disks(grains, SMALLEST / 2, 1e-3, contacts)
 
     def build(self, dt, loop, *, precision, largest_overlap):
         """Put disks, drive and the loop ("grain" or "yade") into YADE, at rest but for a little noise."""

@@ -1,0 +1,242 @@
+"""The largest stable time step: of a pair under every law, against the normal and sliding, and of crystals."""
+
+import math
+
+import numpy as np
+
+from .. import engines, scene
+from .few_grains import CLOSE, Grain, Law, R, advance, duration, lattice, mass_of, place, said_by, spring, state_of
+from .outcome import BOUND, GUARD, RIGHT, judged, largest
+
+GRIP = 1e9  # a friction coefficient that no contact here reaches
+SHALLOW, DEEP = 1e-3, 0.1  # overlaps [R]: of the pair whose motion is watched, and that of GrainLoop's own check
+FAINT = 1e-8  # overlap of a pair that slides [R]: pressed by more it would tip over within the time that it is watched
+BLOCKS, BLOCK, ODD = 8, 500, 7  # how long a pair is watched [steps], and how often towards the end
+START, GROWN = 1e-7, 1e3  # first deviation over the overlap, and its growth that counts as unstable
+RESOLUTION = 5e-4  # of the bisection
+# A strongly damped motion grows by a part 1 + dt/dt_crit - 1 a step or more: 4000 steps see 2 parts in a thousand.
+TOLERANCE = 5e-3
+LAWS = {
+    "spring": Law("springDashpot", dict(normalStiffness=1e6, tangentialStiffness=1e6, restitution=0.5)),
+    "hertz_history": Law(
+        "hertzHistory",
+        dict(normalStiffness=2e6, tangentialStiffness=2.46e6, normalDamping=2500.0, tangentialDamping=2500.0),
+    ),
+    "hertz_restitution": Law("hertzRestitution", dict(young=5e6, poisson=0.45, restitution=0.6)),
+    "cundall_strack": Law("cundallStrack", dict(young=1e6, poisson=1.0)),
+    "hertz_mindlin": Law(
+        "hertzMindlin", dict(young=5e6, poisson=0.3, normalDampingRatio=0.2, tangentialDampingRatio=0.2)
+    ),
+}
+SOURCE = "λ = −1 of leapfrog: dt = (2/ω)(√(1 + ζ²) − ζ), engines/laws/critical_step.hpp"
+
+
+def theory(law, dimensions, overlap, sliding):
+    """Return the critical step of a pair at an overlap [R]: against the normal with m/2, sliding with m/6 (disks) or m/7."""
+    mass = mass_of(dimensions) / 2
+    at = law.terms(overlap * R, mass=mass)
+    if sliding:
+        yields = mass / 3 if dimensions == 2 else mass * 2 / 7
+        return engines.critical_step(at["tangential_stiffness"], at["tangential_dashpot"], yields)
+    return engines.critical_step(at["stiffness"], at["dashpot"], mass)
+
+
+def pressed_pair(law, setting, dimensions, dt, overlap, *, sliding):
+    """Put two grains that a constant force presses together into YADE, a little off their balance; return their ids."""
+    from yade import O
+
+    depth = overlap * R
+    force = law.terms(depth, mass=mass_of(dimensions) / 2)["elastic"]
+    nudge = START * depth
+    speed = nudge / theory(law, dimensions, overlap, sliding)
+    apart = 2 * R - depth - (0 if sliding else nudge)
+    velocity = (0, speed / 2) if sliding else (0, 0)
+    pair = [Grain((-apart / 2, 0), velocity), Grain((apart / 2, 0), (0, -velocity[1]))]
+    law = Law(law.LAW, law.numbers, GRIP if sliding else 0.0)
+    ids = place(pair, law, setting, dt, dimensions, largestOverlap=1.0)
+    for ident, push in zip(ids, (force, -force)):
+        O.forces.setPermF(ident, (push, 0, 0))
+    return ids, (speed if sliding else nudge), apart + (0 if sliding else nudge)
+
+
+def deviation(ids, balance, sliding):
+    """Return how far the pair is from its balance: its distance, or the velocity of one surface along the other."""
+    (x1, v1, w1), (x2, v2, w2) = map(state_of, ids)
+    return abs(v1[1] - v2[1] + R * (w1 + w2)) if sliding else abs(x2[0] - x1[0] - balance)
+
+
+def stays(law, setting, dimensions, dt, overlap, *, sliding):
+    """True if the deviation of a pressed pair does not grow in some thousand steps of dt."""
+    ids, start, balance = pressed_pair(law, setting, dimensions, dt, overlap, sliding=sliding)
+    for _ in range(BLOCKS):
+        advance(BLOCK)
+        if not deviation(ids, balance, sliding) < GROWN * start:
+            return False
+    for _ in range(ODD):  # a mode that turns round every step may stand at zero when it is looked at
+        advance(ODD)
+        if not deviation(ids, balance, sliding) < GROWN * start:
+            return False
+    return True
+
+
+def guarded_step(law, setting, dimensions, sliding):
+    """Return the largest step that GrainLoop takes for two grains apart, over theory at 0.1 R, and what it said to others."""
+    law, words = Law(law.LAW, law.numbers, GRIP if sliding else 0.0), set()
+    expected = theory(law, dimensions, DEEP, sliding)
+
+    def taken(ratio):
+        def build():
+            place([Grain((0, 0)), Grain((2, 0))], law, setting, ratio * expected, dimensions)
+            scene.fast_loop()()  # in this thread
+
+        said = said_by(build)
+        words.add(said.split("critical one")[0] if said else "")
+        return not said
+
+    return largest(taken, 0.5, 2.0, RESOLUTION), words
+
+
+def stable_step(setting, *, law, dimensions):
+    """The largest step of a pair over theory: on YADE's loop by the motion, on GrainLoop by its check, and stable just below."""
+    law, trials = LAWS[law], dict(direction=[], overlap=[], ratio=[], share=[])
+    stable = True
+    for sliding in (False, True):
+        overlap = (FAINT if sliding else SHALLOW) if setting.loop == "yade" else DEEP
+        expected = theory(law, dimensions, overlap, sliding)
+        if setting.loop == "yade":
+            ratio = largest(
+                lambda r: stays(law, setting, dimensions, r * expected, overlap, sliding=sliding), 0.5, 2, RESOLUTION
+            )
+        else:
+            ratio, words = guarded_step(law, setting, dimensions, sliding)
+            stable &= all(word.endswith("time step must not exceed the ") for word in words if word)
+            stable &= sliding or stays(law, setting, dimensions, 0.995 * expected, 0.99 * DEEP, sliding=False)
+        contact = duration(law, mass_of(dimensions) / 2, overlap * R)
+        row = ("sliding" if sliding else "normal", overlap, ratio, ratio * expected / contact)
+        for column, value in zip(trials.values(), row):
+            column.append(value)
+    worst = max(trials["ratio"], key=lambda r: abs(r - 1) if math.isfinite(r) else math.inf)
+    shares = " and ".join(f"{share:.3f}" for share in trials["share"])
+    how = (
+        "the motion grows beyond"
+        if setting.loop == "yade"
+        else "GrainLoop takes no longer one, and just below it a pair is at rest;"
+    )
+    sentence = f"largest step over theory: {how} {shares} of π√(m/k), against the normal and sliding"
+    word = RIGHT if setting.loop == "yade" else GUARD
+    return judged(word, worst if stable else math.nan, 1.0, TOLERANCE, SOURCE, sentence, trials)
+
+
+ALLOWED = 0.3  # an overlap that a user may allow [R]
+
+
+def deep_step(setting, *, dimensions):
+    """GrainLoop's own check is at 0.1 R, however deep grains may be pressed: what it takes over the step of an allowed 0.3 R."""
+    law = LAWS["hertz_restitution"]
+    expected = theory(law, dimensions, ALLOWED, False)
+
+    def taken(ratio):
+        def build():
+            place([Grain((0, 0)), Grain((2, 0))], law, setting, ratio * expected, dimensions, largestOverlap=ALLOWED)
+            scene.fast_loop()()
+
+        return not said_by(build)
+
+    found = largest(taken, 0.5, 2.0, RESOLUTION)
+    stable = stays(law, setting, dimensions, 0.99 * found * expected, ALLOWED, sliding=False)
+    sentence = (
+        f"Hertz's law with largestOverlap = 0.3: step that GrainLoop takes over the critical one of a pair pressed so deep, which"
+        f" {'stays at rest' if stable else 'then swings up'}; the studies' own checks are at their largest_overlap"
+    )
+    source = "stiffness as √δ: (0.3/0.1)^(1/4); GrainLoop checks at 0.1 R"
+    return judged(BOUND, found, (ALLOWED / DEEP) ** 0.25, TOLERANCE, source, sentence)
+
+
+# Crystal --------------------------------------------------------------------------------------------------------------
+
+SQUEEZED = 1e-3  # overlap of its grains [d]
+WATCHED = 3000  # steps
+CONTACTS = {2: 6, 3: 12}  # of a grain
+EDGE = {2: 6, 3: 8}  # omega^2 over k/m of its fastest mode, at the edge of its zone
+
+
+def crystal(setting, dimensions, dt, law):
+    """Put a close-packed crystal, a little squeezed, into YADE, at rest but for noise; return the ids and the noise."""
+    at, box = lattice(dimensions, CLOSE[dimensions] / (1 - SQUEEZED) ** dimensions)
+    noise = 1e-3 if setting.single else 1e-9  # above what rounding of forces does
+    speeds = np.zeros((len(at), 3))
+    speeds[:, :dimensions] = np.random.default_rng(1).normal(0, noise, (len(at), dimensions))
+    grains = [Grain(tuple(x), tuple(v)) for x, v in zip(at, speeds)]
+    return place(grains, law, setting, dt, dimensions, box=box), noise
+
+
+def fastest(ids):
+    """Return the largest speed of the bodies."""
+    return max(float(np.linalg.norm(state_of(ident)[1])) for ident in ids)
+
+
+def crystal_step(setting, dimensions, law, pair):
+    """Return the largest step at which a crystal stays at rest, over the step `pair`."""
+
+    def stable(ratio):
+        ids, noise = crystal(setting, dimensions, ratio * pair, law)
+        said = said_by(lambda: advance(WATCHED))
+        return not said and fastest(ids) < 100 * noise
+
+    return largest(stable, 0.3, 0.95, 2e-3)
+
+
+def stable_crystal(setting, *, dimensions):
+    """The largest step of a crystal without friction over that of a pair, from its fastest mode; and what comes beyond."""
+    law = spring(1e6)
+    pair = theory(law, dimensions, SHALLOW, False)
+    found, expected = crystal_step(setting, dimensions, law, pair), math.sqrt(2 / EDGE[dimensions])
+
+    def run(ratio):
+        advance_ids.extend(crystal(setting, dimensions, ratio * pair, spring(1e6, 0.9))[0])
+        advance(30_000)
+
+    advance_ids = []
+    said = said_by(lambda: run(1.04 * expected))
+    told = (
+        "the overlap guard stops the run"
+        if "overlap by" in said
+        else said or f"speeds of {fastest(advance_ids):.2g} d/s"
+    )
+    sentence = (
+        f"a crystal of {CONTACTS[dimensions]} contacts is stable up to this part of the pair's critical step, of which GrainLoop"
+        f" allows all; 4 % beyond, with e = 0.9: {told}"
+    )
+    source = f"ω² = {EDGE[dimensions]} k/m at the edge of its zone, 2 k/m of a pair"
+    return judged(BOUND, found, expected, 0.01, source, sentence)
+
+
+def frictional_frequency(k_n, k_t, mass):
+    """Return the largest frequency of a triangular crystal whose contacts stick, over the waves that the periodic cell holds."""
+    fastest_of = 0.0
+    sides = [np.array([math.cos(a), math.sin(a)]) for a in (0, math.pi / 3, 2 * math.pi / 3)]
+    weights = 1 / np.sqrt([mass, mass, mass * R**2 / 2])
+    for p in range(8):
+        for q in range(8):
+            wave = 2 * math.pi * np.array([p / 8, q / (8 * math.sqrt(3) / 2)])
+            matrix = np.zeros((3, 3), complex)
+            for n in sides:
+                phase, t = np.exp(1j * wave @ n), np.array([-n[1], n[0]])
+                normal = np.array([*(n * (phase - 1)), 0])
+                slide = np.array([*(t * (phase - 1)), -R * (phase + 1)])
+                matrix += k_n * np.outer(normal.conj(), normal) + k_t * np.outer(slide.conj(), slide)
+            fastest_of = max(fastest_of, np.linalg.eigvalsh(weights[:, None] * matrix * weights).max())
+    return math.sqrt(fastest_of)
+
+
+def stable_crystal_that_sticks(setting):
+    """The same of disks that stick to each other and may turn, against the fastest of the waves that the cell holds."""
+    law = spring(1e6, 1.0, GRIP, 1.0)
+    pair, safe = theory(law, 2, SHALLOW, True), 1 / math.sqrt(CONTACTS[2])
+    found = crystal_step(setting, 2, law, pair)
+    expected = 2 / frictional_frequency(1e6, 1e6, mass_of(2)) / pair
+    sentence = (
+        f"a crystal of six contacts that stick is stable up to this part of the pair's critical step; no packing of six"
+        f" contacts a grain is below 1/√6 = {safe:.3f}"
+    )
+    return judged(BOUND, found, expected, 0.01, "eigenvalues of the crystal's waves, with rotation", sentence)
