@@ -244,6 +244,15 @@ def test_accuracy_takes_the_cheapest_setting_within_it(books):
     assert p.digest() == parse(STUDY, ["cells=16", "speed=1.5"], {}).digest()  # the same run, however it was chosen
 
 
+def test_a_setting_that_the_study_refuses_in_the_scene_is_not_taken(books):
+    def check(p):
+        if p.cells == 16:
+            raise UsageError("sixteen cells are refused")
+
+    p = parse(dataclasses.replace(STUDY, check=check), ["accuracy=5%"], {})
+    assert (p.cells, p.time) == (32, 4.0)
+
+
 def test_a_lever_that_is_given_stays(books):
     assert parse(STUDY, ["accuracy=5%", "time=4"], {}).dict().items() >= dict(time=4.0, cells=32).items()
     p = parse(STUDY, ["accuracy=5%", "time=2"], {})

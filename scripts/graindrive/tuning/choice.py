@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..errors import UsageError
 from . import book as books
+from .effects import NOTHING
 from .words import in_words
 
 CONFIDENCE = 0.9  # at least nine in ten runs stay within the accuracy that was asked for
@@ -76,16 +77,8 @@ def chosen(study, text, made, given):
         if reason:
             reasons.append(reason)
             continue
-        kept = [
-            s
-            for s in book.settings
-            if all(books.alike(book.levers_of(s).get(k), v) for k, v in given.items() if k in book.reference)
-        ]
-        good = [
-            s
-            for s in kept
-            if asked.observable in s.effects and s.effects[asked.observable].bound(CONFIDENCE) <= asked.error
-        ]
+        kept = [s for s in book.settings if is_open(study, made, book, s, given)]
+        good = [s for s in kept if s.effects.get(asked.observable, NOTHING).bound(CONFIDENCE) <= asked.error]
         found += [(seconds(study, made, book, s), book, s) for s in good]
         if not good:
             reasons.append(
@@ -103,6 +96,18 @@ def chosen(study, text, made, given):
     return Choice(
         levers, f"no measured setting will do ({why}): the paper's settings, {in_words(sorted(levers.items()))}"
     )
+
+
+def is_open(study, made, book, setting, given):
+    """True if a setting agrees with the levers that the user gave, and the study takes it in this scene."""
+    levers = book.levers_of(setting)
+    if not all(books.alike(levers.get(key), value) for key, value in given.items() if key in book.reference):
+        return False
+    try:
+        study.check(made(levers))
+    except UsageError:
+        return False
+    return True
 
 
 def coarser(study, book, usual, given):
