@@ -1,0 +1,44 @@
+"""The measured settings that the project ships: each is of a study of this checkout as it is now, and `accuracy=` finds it."""
+
+import math
+
+import pytest
+
+from graindrive.command_line import parse
+from graindrive.parameter_values import argument
+from graindrive.study import house, loaded
+from graindrive.tuning import book, held_out
+
+SHIPPED = {made.file: made for made in book.shipped()}
+
+
+@pytest.fixture(scope="module")
+def studies():
+    return {name: loaded(house()[name]) for name in {made.study for made in SHIPPED.values()}}
+
+
+def test_there_are_books():
+    assert SHIPPED
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_book_speaks_of_its_study(studies, name):
+    made = SHIPPED[name]
+    study = studies[made.study]
+    assert set(made.reference) == set(study.levers)
+    assert {o.name for o in study.observables} >= set().union(*(s.effects for s in made.settings))
+    assert made.settings[0].levers == {} and made.settings[0].effects[study.headline.name].bias == 0
+    assert all(set(s.levers) <= set(study.levers) and s.runs >= 2 and s.core_seconds > 0 for s in made.settings)
+    assert "/" not in made.command.removeprefix("scripts/tune") and "out=" not in made.command
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_accuracy_finds_a_book_in_each_of_its_scenes(studies, name):
+    made = SHIPPED[name]
+    study = studies[made.study]
+    for error in held_out.accuracies(made, study.headline.name):
+        for scene in made.scenes + held_out.drawn_scenes(made, 3, seed=8):
+            keys = [argument(study.parameters, key, value) for key, value in scene.items()]
+            p = parse(study, [*keys, f"accuracy={error:.6g}"], environment={})
+            assert p.choice.book.file == name, p.choice.words
+            assert p.choice.bound(study.headline.name) <= error and math.isfinite(error)
