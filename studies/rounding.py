@@ -315,7 +315,6 @@ STUDY = Study(
         "stiffness": Constant(STIFFNESS, "m/t_0^2", "k_n of two disks"),
         "time_step": Constant(TIME_STEP, "t_0", "at dt_factor=1"),
     },
-    needs_yade=False,
 )
 
 if __name__ == "__main__":
