@@ -9,6 +9,7 @@ from ..errors import UsageError
 from ..parameter_values import argument
 from . import book as books
 from .choice import CONFIDENCE
+from .effects import NOTHING
 from .trials import Trial, Trials
 from .words import in_words
 
@@ -69,14 +70,17 @@ def between(random, values):
 
 
 def accuracies(book, observable):
-    """Return the errors for which some setting of the book is the cheapest that will do, the smallest first."""
-    bounds = {s.effects[observable].bound(CONFIDENCE): s.core_seconds for s in book.settings if observable in s.effects}
-    front, least = [], np.inf
-    for bound in sorted((b for b in bounds if b * SLACK < 1), reverse=False):
-        if bounds[bound] < least:
-            least = bounds[bound]
-            front.append(bound * SLACK)
-    return front
+    """Return the errors for which some setting of the book is the cheapest that will do, the smallest first.
+
+    Not those for which that is the reference: against itself a run has no error.
+    """
+    known = [s for s in book.settings if s.effects.get(observable, NOTHING).bound(CONFIDENCE) * SLACK < 1]
+    found, least = [], np.inf
+    for setting in sorted(known, key=lambda s: s.effects[observable].bound(CONFIDENCE)):
+        if setting.core_seconds < least:
+            least = setting.core_seconds
+            found += [setting.effects[observable].bound(CONFIDENCE) * SLACK] if setting.levers else []
+    return found
 
 
 def points_of(study, study_file, book, folder, count, cores, seed):
@@ -84,7 +88,9 @@ def points_of(study, study_file, book, folder, count, cores, seed):
     observable = study.headline.name
     errors = accuracies(book, observable)
     if not errors:
-        raise UsageError(f"{book.file}: no setting has an error of {observable} that is known to be below 100 %")
+        raise UsageError(
+            f"{book.file}: no setting but the reference has an error of {observable} that is known to be below 100 %"
+        )
     trials = Trials(study, study_file, folder, drawn_scenes(book, count, seed), dict(book.reference), folder)
     asked = [errors[k % len(errors)] for k in range(count)]
     taken = [choice_for(study, trials.scenes[k], asked[k], FIRST_SEED + k) for k in range(count)]
