@@ -372,7 +372,10 @@ def test_the_accuracies_on_trial_make_each_setting_of_the_front_the_choice(books
     book.write(books / "made_up.json", dataclasses.replace(made, settings=tuple(cheaper)))
     book.shipped.cache_clear()
     found = held_out.accuracies(book.read(books / "made_up.json"), "force")
-    assert found == [pytest.approx(0.03, rel=1e-3), pytest.approx(0.04, rel=1e-3)]  # the one of 20 % costs more than that of 4 %
+    assert found == [
+        pytest.approx(0.03, rel=1e-3),
+        pytest.approx(0.04, rel=1e-3),
+    ]  # the one of 20 % costs more than that of 4 %
     taken = [held_out.choice_for(STUDY, {"speed": 1.5}, error, 1001).choice.setting.levers for error in found]
     assert taken == [{"time": 4.0}, {"cells": 16}]
     with pytest.raises(UsageError, match="speed=3.0, measured from 0.5 to 2"):
