@@ -5,12 +5,12 @@ import math
 import pandas as pd
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
+from ...tuning.effects import CONFIDENCE
 from ...tuning.words import in_words, shown
 from ...whole_files import write_text
 from .. import figures
 from ..campaign.plots import COLOURS, MARKERS
 
-CONFIDENCE = 0.9
 ERROR_FLOOR = 1e-3  # of the figure: an error of 0 has no place on a logarithmic axis
 
 

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .. import output, signals
+from .. import output, signals, whole_files
 from ..campaign import execution
 from ..command_line import split
 from ..errors import UsageError, one_line
@@ -18,6 +18,7 @@ from ..provenance import code_version, cpu_model
 from ..started import study_file
 from ..study import duration, loaded
 from . import book, choice, held_out, ladder
+from .effects import CONFIDENCE
 from .search import MOST_SEEDS, Search
 from .trials import Trials
 from .words import in_words, shown
@@ -68,7 +69,7 @@ def tune(arguments):
     out = Path(options["out"] or f"tune_{study.name}").absolute()
     trials = Trials(study, file, out, scenes, reference, Path.cwd())
     found = {key: values for key, (values, _) in ladders.items()}
-    search = Search(trials, found, target.observable, target.error, choice.CONFIDENCE, whole(options, "seeds"))
+    search = Search(trials, found, target.observable, target.error, CONFIDENCE, whole(options, "seeds"))
     tell_plan(search, ladders, options)
     if "-n" in flags:
         return 0
@@ -251,9 +252,9 @@ def reference_trials(trials):
 def write_parameters(path, search):
     """Write the levers of the chosen setting as a file of parameters; return its path."""
     levers = {**search.trials.reference, **dict(search.chosen())}
-    lines = [f"{key}: {shown(value)}" for key, value in sorted(levers.items())]
+    lines = [f"{key}: {value}" for key, value in sorted(levers.items())]  # with all digits
     text = "# Levers that scripts/tune chose; a study takes this file as @FILE.\n" + "\n".join(lines) + "\n"
-    path.write_text(text, encoding="utf-8")
+    whole_files.write_text(path, text)
     return path
 
 

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 from ..errors import UsageError
 from . import book as books
-from .effects import NOTHING
+from .effects import CONFIDENCE, NOTHING
 from .words import in_words
-
-CONFIDENCE = 0.9  # at least nine in ten runs stay within the accuracy that was asked for
 
 
 @dataclass(frozen=True)

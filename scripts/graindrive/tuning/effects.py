@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+CONFIDENCE = 0.9  # of intervals and bounds: at least nine in ten runs stay within what is said of them
 FEWEST_RUNS = 2  # deviations of which a scatter can be taken
 
 

@@ -8,8 +8,7 @@ from ..command_line import parse
 from ..errors import UsageError
 from ..parameter_values import argument
 from . import book as books
-from .choice import CONFIDENCE
-from .effects import NOTHING
+from .effects import CONFIDENCE, NOTHING
 from .trials import Trial, Trials
 from .words import in_words
 

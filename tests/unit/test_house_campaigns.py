@@ -1,0 +1,14 @@
+"""Every campaign of studies/campaigns can be planned as the studies are now: no run of it is refused."""
+
+from pathlib import Path
+
+import pytest
+
+from graindrive.campaign.plan import read_plan
+
+CAMPAIGNS = sorted((Path(__file__).resolve().parents[2] / "studies" / "campaigns").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("file", CAMPAIGNS, ids=lambda file: file.stem)
+def test_a_campaign_of_the_house_is_accepted(file):
+    assert read_plan(file).runs
