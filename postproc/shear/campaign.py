@@ -103,7 +103,7 @@ REPORT = Report(
             "The dense flow of da Cruz et al.",
             "μ and φ against I = γ̇ √(m/P), m the mean mass of a disk, as there; disks of their friction, restitution and k_n/P,"
             " and the drum's. Dashes: μ = 0.25 + 1.1 I and φ = 0.81 − 0.3 I (da Cruz, Emam, Prochnow, Roux, Chevoir, PRE 72,"
-            " 021309 (2005), friction 0.4; the four numbers as they are quoted, not checked against the print). Straight lines are fitted"
+            " 021309 (2005), friction 0.4; the four numbers as they are quoted, not checked against the print). Lines are fitted"
             ' left of the dots. Tolerances are our reading of "≈".',
             da_cruz.claims,
             da_cruz.draw,
