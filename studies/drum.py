@@ -71,7 +71,6 @@ SMALLEST_DRUM = 20  # d
 CENTRIFUGES = 1.0  # Fr from which grains at the wall do not fall
 POURING_RESTITUTION, POURING_STEP, REST = 0.5, 5e-4, 1e-3  # [-]; [sqrt(d/g)] at k_n = 2e5 m g/d; [m g d]
 BLOCKS = 8  # in time, of the averages
-FIELD_SAMPLES = 1000  # moments that the fields average
 MOST_STARTS = 2  # times start_turn: then averages begin even if the flow still drifts
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
@@ -107,6 +106,9 @@ class DrumParameters(StudyParameters):
     turn: float = quantity(360.0, "degrees", "turn of the drum over which is averaged", gt=0, lever=Lever(360, "lower"))
     field_spacing: Optional[float] = quantity(
         None, "d", "edge of the fields' bins; auto: 0.6, for drums over 200 d 1.2", gt=0, le=5
+    )
+    field_samples: int = quantity(
+        1000, "-", "grains: moments that the fields average", ge=8, le=10**6, lever=Lever(1000, "lower", 4)
     )
     frames: int = quantity(
         1,
@@ -265,7 +267,7 @@ def field_averager(p, dt):
     corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=p.spacing, kernel="diskBin", stress=False)
     steps = rows_of_window(p) * block_steps(p)
     timing = dict(
-        every=max(1, steps // FIELD_SAMPLES), phases=BLOCKS, period=(steps + 0.5) * dt
+        every=max(1, steps // p.field_samples), phases=BLOCKS, period=(steps + 0.5) * dt
     )  # its end is in the last block
     return engines.FieldAverager(dead=True, label="dem", **timing, **corners)
 

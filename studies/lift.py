@@ -62,7 +62,6 @@ POURING_FACTOR = 2.0  # time step of the pouring over the paper's
 SAMPLE_EVERY = 10  # steps between two samples of the forces
 BLOCK_TRAVEL = 0.25  # d of travel between two rows of the series
 POINTS = 64  # of the stress by angle, with a Gaussian of 8 degrees (A4)
-FIELD_SAMPLES = 200  # moments that the fields average
 FIELD_REACH = 20  # d around the body, where the box is as large
 LEAST_PERIOD = 4.1  # largest grains that a period must hold: three, with the skin of the search
 AWAY = 2.0  # D between the body and its wake at the end, and d between the body and lid, surface or base
@@ -94,11 +93,18 @@ class LiftParameters(StudyParameters):
     breadth: float = quantity(10.0, "d", "period of the box in y", gt=0, lever=Lever(10, "lower"))
     height: float = quantity(120.0, "d", "height of the bed", gt=0, lever=Lever(120, "lower"))
     travel: Optional[float] = quantity(
-        None, "d", "how far the body is dragged; auto: 40 D, or until 2 D from its wake", gt=0
+        None,
+        "d",
+        "how far the body is dragged; auto: 40 D, or until 2 D from its wake",
+        gt=0,
+        lever=Lever(None, "lower"),
     )
     fields: bool = quantity(True, "-", "average velocity, fraction and stress around the body", watches=True)
     field_spacing: float = quantity(
         1.0, "d", "distance of the fields' points; it must divide 1 d", gt=0, le=1, watches=True
+    )
+    field_samples: int = quantity(
+        200, "-", "moments that the fields average", ge=1, le=10**6, watches=True, lever=Lever(200, "lower")
     )
     frames: int = quantity(
         1, "-", "pictures of the bed, evenly in time, the last at the end", ge=1, le=9999, watches=True
@@ -319,7 +325,7 @@ def field_averager(p, body, held):
     below, above = min(FIELD_REACH, int(p.height - p.depth)), min(FIELD_REACH, int(p.depth) + 2)
     half = p.breadth * D / 2
     corners = dict(low=(-along * D, -half, -below * D), high=(along * D, half, above * D), spacing=p.field_spacing * D)
-    every = max(1, int(p.way * D / (p.speed * time_step(p)) / FIELD_SAMPLES))
+    every = max(1, int(p.way * D / (p.speed * time_step(p)) / p.field_samples))
     how = dict(dimensions=3, kernel="sphere", width=D, averageAlong="y", relative=True, dead=True, every=every)
     return engines.FieldAverager(body=held, label="around", **how, **corners)
 

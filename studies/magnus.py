@@ -55,7 +55,6 @@ BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
 LOOK_EVERY = 50  # blocks between two looks at the error
 CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
 PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
-FIELD_SAMPLES = 1000  # frames that the fields average
 FIELD_REACH = 10, 2  # d around the body, or so many of its diameters where it is large; half as much again behind it
 FEWEST_BLOCKS = 200  # in the steady window before its error is believed
 LEAST_WINDOW = 0.5  # d of travel to average, or there would be no error
@@ -75,7 +74,9 @@ class MagnusParameters(intruder.BodyParameters):
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
     width: float = quantity(300.0, "d", "length of the channel in x, a whole number", gt=0, lever=Lever(300, "lower"))
     height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0, lever=Lever(200, "lower"))
-    travel: Optional[float] = quantity(None, "d", "how far the body goes; auto: the channel's length, the most", gt=0)
+    travel: Optional[float] = quantity(
+        None, "d", "how far the body goes; auto: the channel's length, the most", gt=0, lever=Lever(None, "lower")
+    )
     settle_travel: float = quantity(30.0, "d", "travel that the averages leave out at least", ge=0)
     until_error: float = quantity(
         0.0,
@@ -90,6 +91,9 @@ class MagnusParameters(intruder.BodyParameters):
     wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing", watches=True)
     field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1, watches=True)
+    field_samples: int = quantity(
+        1000, "-", "moments that the fields average", ge=1, le=10**6, watches=True, lever=Lever(1000, "lower", 4)
+    )
     frames: int = quantity(
         1,
         "-",
@@ -251,7 +255,7 @@ def field_averager(p, held, dt):
     """Return the engine that averages the fields in the body's frame."""
     reach = field_reach(p)
     corners = dict(low=(-(reach + reach // 2) * D, -reach * D, 0), high=(reach * D, reach * D, 0))
-    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * dt) / FIELD_SAMPLES))
+    every = max(1, int((p.way - p.settle_travel) * D / (p.v0 * dt) / p.field_samples))
     bins = dict(kernel="diskBin", spacing=p.field_spacing * D, relative=True, stress=False)
     return engines.FieldAverager(body=held, every=every, dead=True, label="around", **bins, **corners)
 

@@ -66,7 +66,7 @@ TIME_STEP = 1e-4  # the paper's [sqrt(d/g)]
 SAMPLES_PER_PERIOD = 40
 SMALLEST_DIAMETER, LARGEST_DIAMETER = 0.9, 1.1  # [d], uniform between
 PHASES = 20  # parts of the cycle
-FIELD_REACH, FIELD_SAMPLES = (15, 5), 100  # d from the body's centre, and at least from its sides; samples per period
+FIELD_REACH = (15, 5)  # d from the body's centre, and at least from its sides
 PAPERS_DEPTH = 105  # d, of the body's centre
 RATE = 90e6  # particle-steps per second of one core (README)
 # What may help where grains overlap too far: in the run, and while the bed settles.
@@ -114,6 +114,15 @@ class WiggleParameters(intruder.BodyParameters):
     intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
     fields: bool = quantity(
         False, "-", "also average area fraction, velocity and pressure around the body by phase", watches=True
+    )
+    field_samples: int = quantity(
+        100,
+        "-",
+        "moments of each period that the fields average",
+        ge=PHASES,
+        le=10**4,
+        watches=True,
+        lever=Lever(100, "lower"),
     )
     lid_pressure: Optional[float] = quantity(
         None,
@@ -244,7 +253,7 @@ def field_averager(p, held, dt):
     around, beside = FIELD_REACH
     reach = min(max(around, int(np.abs(body_of(p).outline).max()) + beside), 2 * int(p.width / 4))
     corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=0.5)
-    phases = dict(phases=PHASES, period=p.period, every=max(1, round(min(p.period, p.time) / FIELD_SAMPLES / dt)))
+    phases = dict(phases=PHASES, period=p.period, every=max(1, round(min(p.period, p.time) / p.field_samples / dt)))
     smooth = dict(kernel="gaussian", width=1, cutoff=3)
     return engines.FieldAverager(body=held, dead=True, label="around", **smooth, **corners, **phases)
 

@@ -22,12 +22,12 @@ LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from 
 class Lever:
     """A parameter that trades accuracy for speed.
 
-    At `reference` a run is as accurate as the study goes. A number costs less in the direction `cheaper`, "higher" or
-    "lower", and is tried in steps of `factor`; of a choice between words `cheaper` is the tuple of the words that cost less,
-    the most accurate first.
+    At `reference` a run is as accurate as the study goes; None stands for `auto`, the value that the study derives. A number
+    costs less in the direction `cheaper`, "higher" or "lower", and is tried in steps of `factor`; of a choice between words
+    `cheaper` is the tuple of the words that cost less, the most accurate first.
     """
 
-    reference: Union[float, str]
+    reference: Union[float, str, None]
     cheaper: Union[str, tuple]
     factor: float = 2.0
 

@@ -68,6 +68,22 @@ def test_a_bound_holds_for_nine_of_ten_further_runs():
     assert 0.9 - 3 * math.sqrt(0.09 / tries) <= share < 0.99  # at least 0.9; wider by what the bias gives away
 
 
+def test_so_many_runs_bring_the_mean_below_the_target():
+    """|bias| + t s n^-1/2 <= target: with bias 1 %, spread 10 % and normal deviations 2 % take (1.645 x 10)^2 = 270.6 runs."""
+    effect = Effect(bias=-0.01, error=0.05, spread=0.1, runs=4, freedom=math.inf)
+    assert effect.runs_for(0.02, 0.9) == 271
+    assert effect.runs_for(0.5, 0.9) == 1
+    assert effect.runs_for(0.01, 0.9) == math.inf
+
+
+def test_a_lever_that_is_auto_starts_from_what_the_study_takes():
+    study = command.loaded(command.study_file("lift"))
+    values = dict(depth=30, lid_density=40, width=60, breadth=5, height=52, travel=None)
+    assert ladder.reference_of(study, {})["travel"] is None
+    assert ladder.parameters_of(study, values).taken()["travel"] == 53.4  # 60 d less 2 D, before the wake
+    assert ladder.rungs(study, values, "travel")[0] == [26.7, 13.35]
+
+
 def test_the_reference_scatters_about_the_mean_of_each_scene():
     effect = of_reference([([1.0, 3.0], [0.1, 0.1]), ([10.0, 10.0], [0.1, 0.1])])
     assert effect.bias == 0 and effect.runs == 4 and effect.freedom == 2

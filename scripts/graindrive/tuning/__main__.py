@@ -252,7 +252,7 @@ def reference_trials(trials):
 def write_parameters(path, search):
     """Write the levers of the chosen setting as a file of parameters; return its path."""
     levers = {**search.trials.reference, **dict(search.chosen())}
-    lines = [f"{key}: {value}" for key, value in sorted(levers.items())]  # with all digits
+    lines = [f"{key}: {'auto' if v is None else v}" for key, v in sorted(levers.items())]  # with all digits
     text = "# Levers that scripts/tune chose; a study takes this file as @FILE.\n" + "\n".join(lines) + "\n"
     whole_files.write_text(path, text)
     return path

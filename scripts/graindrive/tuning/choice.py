@@ -80,9 +80,7 @@ def chosen(study, text, made, given):
         found += [(seconds(study, made, book, s), book, s) for s in good]
         if not good:
             reasons.append(
-                best_of(kept, asked.observable)
-                if kept
-                else f"no setting was measured with {in_words(sorted(given.items()))}"
+                best_of(kept, asked) if kept else f"no setting was measured with {in_words(sorted(given.items()))}"
             )
     if found:
         cost, book, setting = min(found, key=lambda f: f[0])
@@ -112,7 +110,7 @@ def coarser(study, book, usual, given):
     """Return in words which lever of the scale is more accurate than the book's reference; "" if none is."""
     for key, reference in book.reference.items():
         lever, value = study.levers.get(key), getattr(usual, key, None)
-        if lever is None or key in given or isinstance(reference, str):
+        if lever is None or key in given or isinstance(reference, str) or None in (reference, value):
             continue
         if value > reference if lever.cheaper == "lower" else value < reference:
             return f"{key}={value:g} is more accurate than the measured reference, {reference:g}"
@@ -126,15 +124,19 @@ def seconds(study, made, book, setting):
     return setting.cost_factor * study.cost.core_seconds(made(book.levers_of(setting)))
 
 
-def best_of(settings, observable):
-    """Return in words how far the best of the settings is known."""
-    bounds = [s.effects[observable].bound(CONFIDENCE) for s in settings if observable in s.effects]
-    finite = [b for b in bounds if math.isfinite(b)]
-    return (
-        f"the smallest measured error of {observable} is {100 * min(finite):.2g} %"
-        if finite
-        else f"{observable} has no measured error"
-    )
+def best_of(settings, asked):
+    """Return in words how far the best of the settings is known, and how many seeds would do."""
+    measured = [s for s in settings if math.isfinite(s.effects.get(asked.observable, NOTHING).bound(CONFIDENCE))]
+    if not measured:
+        return f"{asked.observable} has no measured error"
+    least = min(s.effects[asked.observable].bound(CONFIDENCE) for s in measured)
+    words = f"the smallest measured error of {asked.observable} is {100 * least:.2g} %"
+    runs = {id(s): s.effects[asked.observable].runs_for(asked.error, CONFIDENCE) for s in measured}
+    enough = [s for s in measured if math.isfinite(runs[id(s)])]
+    if not enough:
+        return words
+    best = min(enough, key=lambda s: runs[id(s)] * s.core_seconds)
+    return f"{words}; the mean over {runs[id(best)]} seeds of {in_words(sorted(best.levers.items()))} would do"
 
 
 def reason_of(asked, book, setting, cost):

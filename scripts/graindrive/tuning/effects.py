@@ -38,6 +38,16 @@ class Effect:
             return math.inf
         return abs(self.bias) + quantile(confidence, self.freedom) * self.spread * math.sqrt(1 + 1 / self.runs)
 
+    def runs_for(self, target, confidence):
+        """Return how many runs to average so that the mean deviates from the reference by less than `target` with `confidence`.
+
+        The smallest n with |bias| + t s n^-1/2 <= target; infinite where the bias alone is larger.
+        """
+        room = target - abs(self.bias)
+        if not (math.isfinite(self.spread) and room > 0):
+            return math.inf
+        return max(1, math.ceil((quantile(confidence, self.freedom) * self.spread / room) ** 2))
+
 
 def quantile(confidence, freedom):
     """Return the quantile of Student's distribution between whose two signs lies the part `confidence`."""

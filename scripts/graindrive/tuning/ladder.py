@@ -25,8 +25,10 @@ def rungs(study, values, key):
 
     Numbers go by the lever's factor, at most `MOST_RUNGS` times; a value that the study refuses ends the ladder.
     """
-    lever, found = study.levers[key], []
-    for value in steps(lever, values[key], plain_type(study.parameters.__fields__[key]) is int):
+    lever, found, start = study.levers[key], [], values[key]
+    if start is None:
+        start = parameters_of(study, values).taken()[key]
+    for value in steps(lever, start, plain_type(study.parameters.__fields__[key]) is int):
         try:
             parameters_of(study, {**values, key: value})
         except UsageError as error:

@@ -133,12 +133,17 @@ class Trials:
         return float(np.median(ratios)) if ratios else 1.0
 
     def expected_seconds(self, trial):
-        """Return the processor time [s] that a trial will take: the study's estimate times what such runs took over theirs."""
+        """Return the processor time [s] that a trial will take: the study's estimate times what such runs took over theirs.
+
+        For a setting of which there is no run yet the worst factor of all settings counts, so that a budget is kept.
+        """
         if trial in self.outcomes:
             return 0.0
         if self.study.cost is None:
             return self.cost(()) if self.of(()) else 0.0
-        return self.cost_factor() * self.study.cost.core_seconds(self.planned(trial).parameters)
+        known = [trial.setting] if self.of(trial.setting) else self.settings
+        factor = max(map(self.cost_factor, known), default=1.0)
+        return factor * self.study.cost.core_seconds(self.planned(trial).parameters)
 
     @property
     def spent(self):

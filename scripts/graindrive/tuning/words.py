@@ -8,4 +8,6 @@ def in_words(setting):
 
 def shown(value):
     """Return a lever's value as one would type it."""
+    if value is None:
+        return "auto"
     return f"{value:g}" if isinstance(value, (int, float)) else value
