@@ -178,8 +178,8 @@ def seeds_sentence(search, rows):
     best = known.loc[(known["runs_to_target"] * known["core_seconds"]).idxmin()]
     runs, seconds = int(best["runs_to_target"]), best["runs_to_target"] * best["core_seconds"]
     return (
-        f"{search.observable} to {100 * search.target:g} % at {100 * CONFIDENCE:.0f} % confidence is cheapest as the mean of {runs}"
-        f" run{'s' * (runs > 1)}, each with another seed, of {best['setting']}: {seconds:.0f} core-seconds."
+        f"{search.observable} to {100 * search.target:g} % at {100 * CONFIDENCE:.0f} % confidence is cheapest as the mean of"
+        f" {runs} run{'s' * (runs > 1)}, each with another seed, of {best['setting']}: {seconds:.0f} core-seconds."
     )
 
 
