@@ -5,8 +5,8 @@ How a run is drawn its study says: one of this checkout, by the name in the run 
 
 import sys
 
-from .. import exports
-from ..errors import UsageError
+from ..exports import exports
+from ..base.errors import UsageError
 from ..parameters import EXPORTS, known_formats
 from ..study import house, loaded
 from .reader import Run, RunError

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
 
-from ..whole_files import written  # noqa: E402
+from ..base.whole_files import written  # noqa: E402
 
 COLUMN_WIDTH = 3.4  # inches: one column of a two-column journal
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter
 
-from ..whole_files import written
+from ..base.whole_files import written
 from .figures import STYLE
 from .reader import Run, RunError
 

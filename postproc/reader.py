@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import run_data, run_file, summary_file
+from ..runs import run_data, run_file, summary_file
 from . import quantities
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`

@@ -39,10 +39,15 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import drum, drum_continuum, engines, fields, headless, lid, picture, progress  # noqa: E402
-from graindrive import recording, scene  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive.material import SpringDashpotMaterial  # noqa: E402
+from graindrive.beds import drum, lid  # noqa: E402
+from graindrive.continuum.continuum import drum_continuum  # noqa: E402
+from graindrive import engines  # noqa: E402
+from graindrive.runs import fields, picture, progress  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.runs import recording  # noqa: E402
+from graindrive.scenes import scene  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.scenes.material import SpringDashpotMaterial  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drum import animation, blocks, figure  # noqa: E402
@@ -51,7 +56,7 @@ from graindrive.postproc.drum.flow import SURFACE_LEVEL, SURFACE_REACH  # noqa: 
 from graindrive.postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady  # noqa: E402
 from graindrive.postproc.statistics import block_mean  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

@@ -32,8 +32,8 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import headless  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.extremes.outcome import Setting  # noqa: E402
 from graindrive.extremes.table import CASES  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402

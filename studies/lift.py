@@ -40,16 +40,21 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import dragged_body, driven, engines, fields, headless, intruder, progress  # noqa: E402
-from graindrive import recording, scene, space, sphere_bed  # noqa: E402
-from graindrive.errors import UsageError, one_line  # noqa: E402
-from graindrive.material import HertzRestitutionSpheres  # noqa: E402
+from graindrive.bodies import dragged_body, intruder  # noqa: E402
+from graindrive.runs import driven, fields, progress  # noqa: E402
+from graindrive import engines  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.runs import recording  # noqa: E402
+from graindrive.scenes import scene, space  # noqa: E402
+from graindrive.beds import sphere_bed  # noqa: E402
+from graindrive.base.errors import UsageError, one_line  # noqa: E402
+from graindrive.scenes.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.lift import animation, figure, forces  # noqa: E402
 from graindrive.postproc.lift.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

@@ -33,17 +33,22 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import channel, driven, engines, fields, headless, intruder, progress, recording, scene  # noqa: E402
-from graindrive.block_means import block_means  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive.material import HertzHistoryMaterial  # noqa: E402
+from graindrive.beds import channel  # noqa: E402
+from graindrive.runs import driven, fields, progress, recording  # noqa: E402
+from graindrive import engines  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.bodies import intruder  # noqa: E402
+from graindrive.scenes import scene  # noqa: E402
+from graindrive.runs.block_means import block_means  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.magnus import figure  # noqa: E402
 from graindrive.postproc.magnus.campaign import REPORT  # noqa: E402
 from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

@@ -38,9 +38,11 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import headless, number_types, recording  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive.number_types import TRUTH, TYPES  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.rounding import number_types  # noqa: E402
+from graindrive.runs import recording  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.rounding.number_types import TRUTH, TYPES  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
 from graindrive.postproc.rounding import averages, distances, figure  # noqa: E402
 from graindrive.postproc.rounding.campaign import REPORT  # noqa: E402

@@ -39,15 +39,17 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import headless, progress, recording, shear_cell  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.runs import progress, recording  # noqa: E402
+from graindrive.beds import shear_cell  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.shear import figure  # noqa: E402
 from graindrive.postproc.shear.campaign import REPORT  # noqa: E402
 from graindrive.postproc.shear.flow import UNITS, steady_flow  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

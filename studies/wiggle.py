@@ -48,17 +48,22 @@ import house  # noqa: E402, F401
 
 import numpy as np  # noqa: E402
 
-from graindrive import driven, engines, fields, headless, intruder, lid, packing, progress  # noqa: E402
-from graindrive import recording, scene  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive.material import HertzHistoryMaterial  # noqa: E402
+from graindrive.runs import driven, fields, progress  # noqa: E402
+from graindrive import engines  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
+from graindrive.bodies import intruder  # noqa: E402
+from graindrive.beds import lid, packing  # noqa: E402
+from graindrive.runs import recording  # noqa: E402
+from graindrive.scenes import scene  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drift import SKIPPED, drift, phase_rates  # noqa: E402
 from graindrive.postproc.wiggle import animation, figure  # noqa: E402
 from graindrive.postproc.wiggle.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 

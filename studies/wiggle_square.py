@@ -8,7 +8,7 @@ if __name__ == "__main__":  # `yade` runs scripts by exec: __file__ is YADE's ow
 
 import wiggle  # noqa: E402
 
-from graindrive import headless  # noqa: E402
+from graindrive.commands import headless  # noqa: E402
 
 STUDY = wiggle.STUDY.preset("wiggle_square", shape="square")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from graindrive import surfaces
+from graindrive.solids import surfaces
 from graindrive.engines import TwoPhaseFlow, flow_words, pressure_solvers, well_posed_range
 
 CELLS, SPACING = 24, 0.5

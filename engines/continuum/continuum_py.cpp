@@ -188,7 +188,8 @@ py::object attribute(Get&& get)
 void bind_continuum()
 {
 	py::class_<TwoPhaseFlow, boost::shared_ptr<TwoPhaseFlow>, boost::noncopyable>("TwoPhaseFlow",
-		"Grains and gas as two incompressible fluids in a moving vessel, in the plane; graindrive.continuum makes them.\n\n"
+		"Grains and gas as two incompressible fluids in a moving vessel, in the plane; graindrive.continuum.continuum makes "
+		"them.\n\n"
 		"TwoPhaseFlow(fraction, solid, cells_x=…, cells_y=…, spacing=…, …): `fraction` [-] of the dense fluid in the cells, "
 		"shape\n"
 		"(cells_y, cells_x); `solid`, a Surface whose section at z = 0 is the vessel, or None; keywords as flow_words() lists "

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from both_loops import each_loop, put_on, way_of
 from disks import EPS, engines
-from graindrive import scene as whole_scene
+from graindrive.scenes import scene as whole_scene
 from yade import O
 
 DT = 1e-3

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from disks import engines
-from graindrive.material import HertzHistoryMaterial
+from graindrive.scenes.material import HertzHistoryMaterial
 
 LAWS = engines.contact_laws()
 

@@ -4,7 +4,8 @@ import disks
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, surfaces
+from graindrive import engines
+from graindrive.solids import surfaces
 from yade import O
 from yade import wrapper as w
 

@@ -48,7 +48,7 @@ void bind_checkpoint(GrainLoopClass& cls)
 	cls.def("checkpoint", checkpoint, (py::arg("path"), py::arg("saved_scene") = bytes("")),
 		"Write loop, bodies, drives and measures into one file; a run restored from it goes on to the last bit. Other engines\n"
 		"(PyRunner, recorders) are named in it, no more. saved_scene: bytes that O.save wrote, to go along; "
-		"graindrive.scene.save\n"
+		"graindrive.scenes.scene.save\n"
 		"does that. Raises RuntimeError with the system's reason if it cannot be written; an older file then stays.");
 	cls.def("restore", restore, (py::arg("path")),
 		"Go on from a checkpoint in the same scene, built anew or loaded: positions, velocities, O.iter and the state of drives "

@@ -4,7 +4,9 @@ import disks
 import numpy as np
 import pytest
 
-from graindrive import engines, grain_loop, scene
+from graindrive import engines
+from graindrive.loops import grain_loop
+from graindrive.scenes import scene
 from yade import O
 
 BEFORE, AFTER = 1500, 300  # steps; the bed has fallen onto its base when it is saved

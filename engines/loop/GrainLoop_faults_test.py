@@ -5,7 +5,9 @@ import math
 import disks
 import pytest
 
-from graindrive import grain_loop, scene, yade_march
+from graindrive.loops import grain_loop
+from graindrive.scenes import yade_march
+from graindrive.scenes import scene
 from graindrive.engines import GrainLoop, OscillationDrive
 from yade import O, utils, wrapper
 

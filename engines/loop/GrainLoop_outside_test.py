@@ -3,7 +3,8 @@
 import disks
 import numpy as np
 import pytest
-from graindrive import engines, grain_loop
+from graindrive import engines
+from graindrive.loops import grain_loop
 from yade import O, wrapper
 from yade.minieigenHP import Vector3
 

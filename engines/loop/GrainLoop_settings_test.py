@@ -3,7 +3,7 @@
 import disks
 import numpy as np
 import pytest
-from graindrive import grain_loop
+from graindrive.loops import grain_loop
 from yade import O
 from yade.minieigenHP import Vector3
 from yade.wrapper import FrictMat

@@ -6,7 +6,9 @@ import disks
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, grain_loop, surfaces
+from graindrive import engines
+from graindrive.loops import grain_loop
+from graindrive.solids import surfaces
 from yade import O, Quaternion
 from yade.minieigenHP import Vector3
 from yade.wrapper import (

@@ -4,8 +4,8 @@ import disks
 import numpy as np
 import pytest
 import spheres
-from graindrive import grain_loop, take_over_spheres
-from graindrive.errors import UsageError
+from graindrive.loops import grain_loop, take_over_spheres
+from graindrive.base.errors import UsageError
 from yade import O, wrapper
 from yade.minieigenHP import Vector3
 

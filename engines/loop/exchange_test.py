@@ -5,8 +5,9 @@ import builtins
 import disks
 import numpy as np
 import pytest
-from graindrive import engines, grain_loop, take_over
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.loops import grain_loop, take_over
+from graindrive.base.errors import UsageError
 from yade import O, wrapper
 from yade.minieigenHP import Vector3
 

@@ -244,7 +244,7 @@ double critical_time_step_of_bodies(const Scene<D>& scene, double overlap)
 }
 
 template <int D>
-void check_scene(const Scene<D>& scene)
+void check_scene(const Scene<D>& scene, double overlap)
 {
 	require(!scene.grains.empty(), "a scene must have at least one grain, got none");
 	require(scene.dt > 0 && std::isfinite(scene.dt), "time step must be positive, got ", scene.dt);
@@ -259,10 +259,10 @@ void check_scene(const Scene<D>& scene)
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b) check_body(scene.bodies[b], b);
 	for (const Solid<D>& solid : scene.solids) check_solid(scene, solid);
 	laws::require_in_range(scene.law);
-	const double critical = critical_time_step(scene);
+	const double critical = critical_time_step(scene, overlap);
 	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,
-		", got ", scene.dt, "; lower it or take softer grains");
-	const double of_bodies = critical_time_step_of_bodies(scene);
+		", at the overlap of ", overlap, " R that stops the run, got ", scene.dt, "; lower it or take softer grains");
+	const double of_bodies = critical_time_step_of_bodies(scene, overlap);
 	require(scene.dt <= of_bodies,
 		"time step must not exceed the critical one of the lightest body (clump, large, watched or driven ",
 		D == 2 ? "disk" : "sphere, solid", ") at its stiffest contact, ", of_bodies, ", got ", scene.dt,
@@ -287,7 +287,7 @@ template double critical_time_step(const Scene<2>&, double);
 template double critical_time_step(const Scene<3>&, double);
 template double critical_time_step_of_bodies(const Scene<2>&, double);
 template double critical_time_step_of_bodies(const Scene<3>&, double);
-template void check_scene(const Scene<2>&);
-template void check_scene(const Scene<3>&);
+template void check_scene(const Scene<2>&, double);
+template void check_scene(const Scene<3>&, double);
 
 }  // namespace graindrive::loop

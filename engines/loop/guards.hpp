@@ -22,9 +22,10 @@ std::string sentence(const Words&... words)
 inline bool is_positive(double inertia) { return inertia > 0; }
 inline bool is_positive(const Vec<3>& inertia) { return inertia[0] > 0 && inertia[1] > 0 && inertia[2] > 0; }
 
+/// The time step must be stable for pairs that overlap by `overlap` of the smaller radius: the overlap that stops the run.
 /// @throws std::invalid_argument naming the rule, the number and the way out
 template <int D>
-void check_scene(const Scene<D>& scene);
+void check_scene(const Scene<D>& scene, double overlap = 0.1);
 
 /// Largest stable time step of the stiffest, lightest pair of free grains at an overlap of `overlap` radii [s].
 ///

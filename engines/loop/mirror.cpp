@@ -38,7 +38,9 @@ void MirrorOf<D>::build()
 	for (const Wall<3>& wall : engine.kept_walls()) s.walls.push_back(in_dimension<D>(wall));
 	s.target_fraction = engine.targetAreaFraction;
 	map = read_yade(scene(), engine.watched, s);
-	stepper = std::make_unique<Stepper<D>>(s);
+	Guards<D> guards;
+	guards.largest_overlap = engine.largestOverlap;
+	stepper = std::make_unique<Stepper<D>>(s, guards);
 	stepper->set_springs(kept_springs());
 	stepper->track_energy(engine.trackEnergy);
 	bring_surface_springs();
@@ -77,12 +79,13 @@ void MirrorOf<D>::bring_settings_of_step()
 {
 	Guards<D>& guards = stepper->guarding();
 	const std::vector<Real>& bounds = engine.bounds;
+	const bool other_overlap = guards.largest_overlap != engine.largestOverlap;
 	guards.largest_overlap = engine.largestOverlap;
 	guards.bounded = !bounds.empty();
 	for (int k = 0; k < D && guards.bounded; ++k) guards.low[k] = bounds[k], guards.high[k] = bounds[D + k];
 	stepper->target_fraction() = engine.targetAreaFraction;
 	if (!stepper->step_under_way()) stepper->track_energy(engine.trackEnergy);
-	if (stepper->settings().dt != scene().dt) stepper->set_time_step(scene().dt);
+	if (stepper->settings().dt != scene().dt || other_overlap) stepper->set_time_step(scene().dt);
 }
 
 /// Does the work; if a guard trips, everyone can see in O.bodies what went wrong.

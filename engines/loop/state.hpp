@@ -51,7 +51,7 @@ struct SurfaceTouch {
 /// How a step is checked while it runs.
 template <int D>
 struct Guards {
-	long every = 100;              ///< steps between two looks at every pair
+	long every = 100;              ///< steps between two looks at every pair, at most: every search looks, too; 0: never
 	double largest_overlap = 0.1;  ///< of the smaller radius [-]
 	bool bounded = false;          ///< the caller says where grains may be, below; else a base says how far they may fall
 	Vec<D> low, high;              ///< [m]; no bound along an axis where both are equal

@@ -7,10 +7,11 @@
 namespace graindrive::loop {
 
 template <int D>
-Stepper<D>::Stepper(const Scene<D>& scene)
+Stepper<D>::Stepper(const Scene<D>& scene, const Guards<D>& guards)
 {
 	state.scene = scene;
-	check_scene(scene);
+	state.guards = guards;
+	check_scene(scene, guards.largest_overlap);
 	check_surfaces(scene);
 	state.flow.image_velocity = scene.cell.image_velocity();
 	arrange_rows();
@@ -156,10 +157,10 @@ void Stepper<D>::look_before()
 		double to_come = 0;
 		for (std::size_t p = 0; p < state.allowed.size() && surfaces.any(); ++p)
 			to_come = std::max(to_come, budgets.way_to_come(p));
-		moved_by_hand |= surfaces.moved_by_hand();
+		moved_since_look |= surfaces.moved_by_hand();
 		surfaces.list(to_come);
-		if (state.guards.every > 0 && (moved_by_hand || state.steps % state.guards.every == 0)) guards.check(pairs, surfaces);
-		moved_by_hand = false;
+		if (state.guards.every > 0 && (moved_since_look || state.steps % state.guards.every == 0)) guards.check(pairs, surfaces);
+		moved_since_look = false;
 		surfaces.compute_forces();
 		if (state.scene.cell.sheared()) pairs.see_cell();
 		hand_outside_forces_over();
@@ -175,7 +176,7 @@ template <int D>
 void Stepper<D>::finish()
 {
 	if (!body_forces_known) gather_body_forces();
-	moved_by_hand |= surfaces.moved_by_hand();  // since forces were computed
+	moved_since_look |= surfaces.moved_by_hand();  // since forces were computed
 	rigid.move();
 	bool sweep_has_done_it = true;
 	if constexpr (D == 2) sweep_has_done_it = pairs.sweep_knows_outside();

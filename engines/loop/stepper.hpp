@@ -23,7 +23,8 @@ template <int D>
 class Stepper {
 public:
 	/// @throws std::invalid_argument for a scene that cannot be run: says which number, the rule and the way out
-	explicit Stepper(const Scene<D>& scene);
+	/// The time step must bear the overlap at which `guards` stop the run.
+	explicit Stepper(const Scene<D>& scene, const Guards<D>& guards = {});
 	Stepper(const Stepper&) = delete;
 
 	/// Goes n steps on. @throws std::runtime_error when a guard trips, with step, grain and likely cause
@@ -131,7 +132,7 @@ private:
 	std::vector<char> thread_beyond;  // by thread: a block went beyond its limit
 	std::exception_ptr failure;
 	bool searching = false;
-	bool moved_by_hand = false;  // grains or solids have been put elsewhere: guards look at all at once
+	bool moved_since_look = false;  // far enough for a search, or put elsewhere: guards look at all grains at once
 	bool body_forces_known = false;
 	std::vector<std::uint32_t> handed_over;  // rows in space that have been told the forces of surfaces and pushes
 	bool laid_out_since_forces = false;

@@ -27,7 +27,7 @@ void Stepper<D>::put(std::size_t index, const Grain<D>& grain)
 	if (!elsewhere) return;
 	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // whoever was near is no guide any more
 	surfaces.forget_list();
-	state.selection_due = moved_by_hand = true;
+	state.selection_due = moved_since_look = true;
 }
 
 template <int D>
@@ -61,7 +61,7 @@ void Stepper<D>::change(const Scene<D>& wanted)
 	if (books && other_physics)
 		throw std::invalid_argument(
 			"law, friction, gravity and damping must stay while energy is tracked; switch trackEnergy off and on again");
-	check_scene(changed);
+	check_scene(changed, state.guards.largest_overlap);
 	check_surfaces(changed);
 	take_back_body_forces();
 	if (state.selections > 0) pairs.keep_springs();
@@ -110,7 +110,7 @@ void Stepper<D>::set_time_step(double dt)
 		throw std::invalid_argument("the time step must stay while energy is tracked; switch trackEnergy off and on again");
 	Scene<D> changed = state.scene;
 	changed.dt = dt;
-	check_scene(changed);
+	check_scene(changed, state.guards.largest_overlap);
 	check_surfaces(changed);
 	state.scene.dt = dt;
 	use_whole_steps();
@@ -277,7 +277,7 @@ std::unique_ptr<Stepper<D>> Stepper<D>::restore(const std::string& path, int thr
 	State<D> saved;
 	visit_state(unpack, saved);
 	saved.scene.threads = threads;
-	auto stepper = std::make_unique<Stepper>(saved.scene);
+	auto stepper = std::make_unique<Stepper>(saved.scene, saved.guards);
 	stepper->state = std::move(saved);
 	stepper->resume();
 	bool tracked = false;

@@ -62,7 +62,7 @@ void Stepper<D>::plan_lists()
 		budgets.choose_horizon();
 		if (state.searches > 0) budgets.allow_travel();
 		searching = state.searches == 0 || !(budgets.approach_before_selection() <= state.skin);
-		if (searching) begin_search();
+		if (searching) begin_search(), moved_since_look = true;
 	} catch (...) {
 		failure = std::current_exception();
 	}

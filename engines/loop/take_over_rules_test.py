@@ -2,8 +2,9 @@
 
 import disks
 import pytest
-from graindrive import engines, grain_loop, take_over
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.loops import grain_loop, take_over
+from graindrive.base.errors import UsageError
 from yade import O, wrapper
 
 

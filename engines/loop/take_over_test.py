@@ -5,8 +5,8 @@ import math
 import disks
 import numpy as np
 import pytest
-from graindrive import grain_loop
-from graindrive.errors import UsageError
+from graindrive.loops import grain_loop
+from graindrive.base.errors import UsageError
 from yade import O, utils
 from yade.minieigenHP import Matrix3, Vector3
 

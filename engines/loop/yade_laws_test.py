@@ -11,8 +11,8 @@ import re
 import disks
 import numpy as np
 import pytest
-from graindrive import grain_loop, loop_laws
-from graindrive.errors import UsageError
+from graindrive.loops import grain_loop, loop_laws
+from graindrive.base.errors import UsageError
 from yade import O, utils
 from yade.minieigenHP import Vector3
 from yade.wrapper import (

@@ -242,7 +242,7 @@ struct Reader {
 		const std::string name = "GrainLoop: the Solid of body " + std::to_string(id);
 		if (body.isClumpMember())
 			throw std::invalid_argument(name + " is a member of a clump, which GrainLoop does not move; unite surfaces instead "
-											   "(graindrive.surfaces: a | b), or use YADE's own loop");
+											   "(graindrive.solids.surfaces: a | b), or use YADE's own loop");
 		if (!shape.surface()) throw std::invalid_argument(name + " has no surface; give it one: Solid(surfaces.ball(...))");
 		constexpr unsigned translations = State::DOF_X | State::DOF_Y | (D == 3 ? State::DOF_Z : 0);
 		if (!(body.state->mass > 0) && (body.state->blockedDOFs & translations) != translations)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from disks import EPS, disk, engine, hertz, loop, new_scene, run
 from field_scenes import FIELDS, LENGTH, averager, crowd, fields_of
-from graindrive import grain_loop
+from graindrive.loops import grain_loop
 from yade import O
 
 

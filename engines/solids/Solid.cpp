@@ -4,7 +4,7 @@
 namespace graindrive {
 
 const char* const Solid::documentation =
-	"A shape given by the distance to its surface and the normal there: graindrive.surfaces makes such surfaces.\n\n"
+	"A shape given by the distance to its surface and the normal there: graindrive.solids.surfaces makes such surfaces.\n\n"
 	"Solid(surface) or Solid(recipe='ball 0 0 0 1'). The surface is seen in the body's frame: its origin is state.pos, its axes "
 	"are\n"
 	"turned by state.ori. Stands with Bo1_Solid_Aabb and Ig2_Solid_Sphere_ScGeom. The recipe is what O.save keeps. Raises "

@@ -6,7 +6,8 @@ import sys
 
 import numpy as np
 import pytest
-from graindrive import engines, surfaces
+from graindrive import engines
+from graindrive.solids import surfaces
 from scipy.integrate import solve_ivp
 from yade import O, Quaternion
 from yade.utils import sphere
@@ -448,7 +449,8 @@ def test_endless_solids_fit_a_periodic_cell_and_short_ones_have_images():
 SORTED_AGAIN = """
 import sys
 import numpy as np
-from graindrive import engines, surfaces
+from graindrive import engines
+from graindrive.bodies import surfaces
 from yade import O, utils
 from yade.wrapper import Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom
 from yade.wrapper import InsertionSortCollider, InteractionLoop, NewtonIntegrator

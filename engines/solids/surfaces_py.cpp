@@ -107,7 +107,7 @@ bool same(const Described& a, const Described& b) { return a.recipe == b.recipe;
 void bind_surfaces()
 {
 	py::class_<Described, boost::shared_ptr<Described>>("Surface",
-		"A solid body by the distance to its surface and the normal there, made from a recipe; graindrive.surfaces makes "
+		"A solid body by the distance to its surface and the normal there, made from a recipe; graindrive.solids.surfaces makes "
 		"them.\n\n"
 		"Surface(recipe): as `recipe` of another one. Raises ValueError for a recipe that is none, naming the word and its "
 		"place.",
@@ -125,7 +125,7 @@ void bind_surfaces()
 		.def("__eq__", &same)
 		.def_pickle(SurfacePickle());
 	py::def("sampled_recipe", &sampled_recipe, (py::arg("count"), py::arg("low"), py::arg("spacing"), py::arg("distances")),
-		"The recipe of distances at the nodes of a grid, x fastest; see graindrive.surfaces.sampled.");
+		"The recipe of distances at the nodes of a grid, x fastest; see graindrive.solids.surfaces.sampled.");
 	py::def("surface_kinds", &kinds, "The names with which a recipe may begin.");
 }
 

@@ -5,7 +5,8 @@ import pickle
 
 import numpy as np
 import pytest
-from graindrive import engines, surfaces
+from graindrive import engines
+from graindrive.solids import surfaces
 
 EPS = np.finfo(float).eps
 POINTS = np.random.default_rng(3).uniform(-2, 2, (5000, 3))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ... import summary_file
+from ...runs import summary_file
 from ...campaign import plan_json
 from ..measured import birge_ratio
 from ..reader import Run, RunError

@@ -4,7 +4,7 @@ import sys
 from dataclasses import replace
 from urllib.parse import quote
 
-from ...whole_files import write_text
+from ...base.whole_files import write_text
 from .. import figures
 from ..reader import RunError
 from .folder import Campaign

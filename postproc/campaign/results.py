@@ -10,7 +10,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from ...whole_files import write_text, written
+from ...base.whole_files import write_text, written
 from ..reader import RunError
 from .folder import Campaign
 

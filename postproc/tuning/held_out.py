@@ -2,8 +2,8 @@
 
 from scipy import stats
 
-from ...whole_files import write_text
-from ...tuning.words import in_words
+from ...base.whole_files import write_text
+from ...accuracy.words import in_words
 from .. import figures
 from ..campaign.plots import COLOURS, MARKERS
 

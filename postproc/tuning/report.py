@@ -5,9 +5,9 @@ import math
 import pandas as pd
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
-from ...tuning.effects import CONFIDENCE
-from ...tuning.words import in_words, shown
-from ...whole_files import write_text
+from ...accuracy.effects import CONFIDENCE
+from ...accuracy.words import in_words, shown
+from ...base.whole_files import write_text
 from .. import figures
 from ..campaign.plots import COLOURS, MARKERS
 

@@ -28,7 +28,8 @@ def find_yade():
 
 find_yade()
 
-from . import interaction_helpers, pausing, solid_errors, surface_algebra  # noqa: E402
+from .loops import interaction_helpers, pausing, solid_errors  # noqa: E402
+from .solids import surface_algebra  # noqa: E402
 from ._engines import *  # noqa: E402, F401, F403
 from ._engines import prove_layout  # noqa: E402, F401
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional, Union
 
-from .errors import UsageError
+from .base.errors import UsageError
 from .parameters import StudyParameters
 from .postproc import quantities
 

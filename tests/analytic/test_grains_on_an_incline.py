@@ -17,8 +17,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from graindrive import scene
-from graindrive.material import SpringDashpotMaterial
+from graindrive.scenes import scene
+from graindrive.scenes.material import SpringDashpotMaterial
 from graindrive.postproc.shear.rheology import friction_law
 
 SLOPE = 0.38  # tan(theta); grains stop near 0.27, and speed up for ever from some 0.45 on

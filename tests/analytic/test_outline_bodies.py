@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from graindrive import engines, intruder, scene
-from graindrive.material import HertzHistoryMaterial
+from graindrive import engines
+from graindrive.bodies import intruder
+from graindrive.scenes import scene
+from graindrive.scenes.material import HertzHistoryMaterial
 
 DT = 1e-4
 EPS = np.finfo(float).eps

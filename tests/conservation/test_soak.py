@@ -7,7 +7,7 @@ import signal
 import numpy as np
 import pytest
 
-from graindrive import soak
+from graindrive.commands import soak
 
 STEPS, BLOCK = 4000, 500
 

@@ -8,12 +8,12 @@ import time
 import h5py
 import numpy as np
 
-from graindrive.run_data import merge, read_series
+from graindrive.runs.run_data import merge, read_series
 
 WRITER = """
 import sys
 import numpy as np
-from graindrive import run_data
+from graindrive.runs import run_data
 series = run_data.SeriesWriter("series.h5", {"t": "s", "x": "d"})
 print("writing", flush=True)
 for k in range(10**9):

@@ -4,9 +4,9 @@ import os
 import sys
 
 import pytest
-from graindrive import intruder
+from graindrive.bodies import intruder
 from graindrive.engines import Outline, clump_of, outline_of, read_outline
-from graindrive.errors import UsageError
+from graindrive.base.errors import UsageError
 
 SQUARE = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))"
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from graindrive.run_data import read_series
+from graindrive.runs.run_data import read_series
 
 pytestmark = pytest.mark.skipif(shutil.which("yade") is None, reason="needs the yade program")
 TOY = Path(__file__).with_name("toy_study.py")
@@ -229,7 +229,7 @@ def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
 
 def test_readers_that_leave_do_not_end_the_run(place):
     """As scripts/run starts a study."""
-    program = (sys.executable, "-P", "-c", "from graindrive.output import run_program; run_program()")
+    program = (sys.executable, "-P", "-c", "from graindrive.base.output import run_program; run_program()")
     process = place.start("out=a", program=program, options=())
     process.stdout.close()
     process.stderr.close()

@@ -7,12 +7,12 @@ from typing import Literal
 
 import numpy as np
 
-from graindrive.errors import UsageError
-from graindrive.headless import listening_ports, main
+from graindrive.base.errors import UsageError
+from graindrive.commands.headless import listening_ports, main
 from graindrive.parameters import StudyParameters, quantity
-from graindrive.progress import run_blocks
+from graindrive.runs.progress import run_blocks
 from graindrive.study import Study
-from graindrive.yade_march import YadeMarch
+from graindrive.scenes.yade_march import YadeMarch
 
 
 class Toy(StudyParameters):

@@ -11,7 +11,7 @@ import lift_study
 import numpy as np
 import pytest
 
-from graindrive import scene
+from graindrive.scenes import scene
 from graindrive.benchmark import liggghts_lift, peer_lift
 
 pytestmark = pytest.mark.skipif(

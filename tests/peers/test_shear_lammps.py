@@ -5,7 +5,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from graindrive import engines, grain_loop
+from graindrive import engines
+from graindrive.loops import grain_loop
 from graindrive.benchmark import lammps
 from graindrive.postproc.statistics import block_mean, ratio_mean
 import disks

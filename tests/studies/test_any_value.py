@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from graindrive.command_line import parse
-from graindrive.errors import UsageError
+from graindrive.commands.command_line import parse
+from graindrive.base.errors import UsageError
 from graindrive.parameters import LIMITS, choices, plain_type
-from graindrive.run_place import place_of
+from graindrive.runs.run_place import place_of
 from graindrive.study import loaded
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"

@@ -7,11 +7,13 @@ from pathlib import Path
 import h5py
 import pytest
 
-from graindrive import lid, recording, yade_march
+from graindrive.beds import lid
+from graindrive.runs import recording
+from graindrive.scenes import yade_march
 from graindrive.campaign.plan import read_plan
-from graindrive.command_line import help_table, parse
-from graindrive.errors import EngineError, UsageError
-from graindrive.run_folder import RunFolder
+from graindrive.commands.command_line import help_table, parse
+from graindrive.base.errors import EngineError, UsageError
+from graindrive.runs.run_folder import RunFolder
 from graindrive.study import loaded
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"

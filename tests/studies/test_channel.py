@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from graindrive import channel, engines
-from graindrive.errors import UsageError
-from graindrive.material import HertzHistoryMaterial
+from graindrive.beds import channel
+from graindrive import engines
+from graindrive.base.errors import UsageError
+from graindrive.scenes.material import HertzHistoryMaterial
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ import pytest
 from drum_study import assert_same, carry_out
 from known_names import unexplained
 
-from graindrive import yade_march
-from graindrive.errors import Interrupted, UsageError
+from graindrive.scenes import yade_march
+from graindrive.base.errors import Interrupted, UsageError
 from graindrive.postproc.drum import blocks
 from graindrive.postproc.reader import Run
 

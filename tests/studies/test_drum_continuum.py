@@ -11,9 +11,10 @@ import pytest
 from drum_study import STUDIES, assert_same, carry_out
 from known_names import unexplained
 
-from graindrive import drum_continuum, exports
-from graindrive.continuum import FlowMarch
-from graindrive.errors import EngineError, Interrupted, UsageError
+from graindrive.continuum.continuum import drum_continuum
+from graindrive.exports import exports
+from graindrive.continuum.continuum import FlowMarch
+from graindrive.base.errors import EngineError, Interrupted, UsageError
 from graindrive.postproc.drum import blocks, figure
 from graindrive.postproc.drum.flow import BED_FRACTION
 from graindrive.postproc.drum.flow_frames import FlowFrames
@@ -182,8 +183,8 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(drum, whole, tmp_path,
 
 KILLED = """
 import os, sys
-from graindrive import headless
-from graindrive.continuum import FlowMarch
+from graindrive.commands import headless
+from graindrive.continuum.continuum import FlowMarch
 from graindrive.study import loaded
 study, number = loaded(sys.argv.pop(1)), int(sys.argv.pop(1))
 advance = FlowMarch.advance

@@ -10,11 +10,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from graindrive import engines, headless, scene, shear_cell
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.commands import headless
+from graindrive.scenes import scene
+from graindrive.beds import shear_cell
+from graindrive.base.errors import UsageError
 from graindrive.extremes import fluids, outcome, steps, table
 from graindrive.extremes.few_grains import advance, mass_of, spring
-from graindrive.material import SpringDashpotMaterial
+from graindrive.scenes.material import SpringDashpotMaterial
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.extremes import campaign
 from graindrive.postproc.reader import Run

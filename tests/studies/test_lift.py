@@ -9,12 +9,15 @@ import lift_study
 import numpy as np
 import pytest
 
-from graindrive import dragged_body, scene, space, sphere_bed, yade_march
+from graindrive.bodies import dragged_body
+from graindrive.scenes import scene, space
+from graindrive.beds import sphere_bed
+from graindrive.scenes import yade_march
 from graindrive.benchmark import peer_lift
-from graindrive.errors import Interrupted, UsageError
-from graindrive.killtest import TIMED
+from graindrive.base.errors import Interrupted, UsageError
+from graindrive.commands.killtest import TIMED
 from graindrive.postproc.lift import forces
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 TINY = dict(lift_study.SMALL, width=16, travel=9.0)
 

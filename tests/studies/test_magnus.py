@@ -10,10 +10,11 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import headless, yade_march
-from graindrive.errors import EngineError, Interrupted, UsageError
-from graindrive.killtest import TIMED
-from graindrive.run_folder import RunFolder
+from graindrive.commands import headless
+from graindrive.scenes import yade_march
+from graindrive.base.errors import EngineError, Interrupted, UsageError
+from graindrive.commands.killtest import TIMED
+from graindrive.runs.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 TINY = dict(width=24, height=20, intruder_diameter=3, v0=2.5, dt_factor=2, travel=2.0, settle_travel=0.5, fields=False)

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from graindrive import headless
+from graindrive.commands import headless
 from graindrive.postproc import quantities
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.reader import Run

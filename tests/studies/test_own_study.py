@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from graindrive.killtest import TIMED
+from graindrive.commands.killtest import TIMED
 from graindrive.postproc import __main__ as postproc
 from graindrive.postproc.reader import Run
 from graindrive.study import loaded
@@ -25,7 +25,7 @@ KEYS = ["time=20", "damping=0.2", "checkpoint_seconds=0"]  # a checkpoint after 
 # The study's file as a module whose march kills its process, or asks it to stop, before a step.
 STOPPED = """
 import os, sys
-from graindrive import headless
+from graindrive.commands import headless
 from graindrive.study import loaded
 study, number, at = loaded(sys.argv.pop(1)), int(sys.argv.pop(1)), int(sys.argv.pop(1))
 oscillator = sys.modules[study.run.__module__].Oscillator

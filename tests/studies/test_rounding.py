@@ -11,8 +11,9 @@ import pytest
 
 from known_names import unexplained
 
-from graindrive import number_types, run_folder
-from graindrive.errors import EngineError, Interrupted, UsageError
+from graindrive.rounding import number_types
+from graindrive.runs import run_folder
+from graindrive.base.errors import EngineError, Interrupted, UsageError
 from graindrive.postproc.reader import Run
 from graindrive.postproc.rounding import averages, distances
 

@@ -10,11 +10,11 @@ import pytest
 
 from known_names import unexplained
 
-from graindrive import yade_march
-from graindrive.errors import Interrupted, UsageError
+from graindrive.scenes import yade_march
+from graindrive.base.errors import Interrupted, UsageError
 from graindrive.postproc.reader import Run
 from graindrive.postproc.shear.flow import steady_flow
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 TINY = dict(grains=80, strain=1.0, settle_strain=0.2, inertial_number=0.2, dt_factor=3)

@@ -10,14 +10,14 @@ import pytest
 
 import graindrive
 from graindrive.campaign.execution import hear_interrupts
-from graindrive.errors import EngineError, UsageError
+from graindrive.base.errors import EngineError, UsageError
 from graindrive.postproc.reader import Run
 
 COUNTER = '''
 """Counter: counts, and fails or waits where it is told to."""
 import os, signal
-from graindrive import headless
-from graindrive.errors import EngineError
+from graindrive.commands import headless
+from graindrive.base.errors import EngineError
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.study import Observable, Study
 

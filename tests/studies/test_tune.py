@@ -13,13 +13,13 @@ import pandas as pd
 import pytest
 
 from graindrive.postproc.reader import Run
-from graindrive.tuning import book
+from graindrive.accuracy import book
 
 BUILT = next(folder for folder in sys.path if (Path(folder) / "graindrive").is_dir())
 DECAY = '''
 """Decay: what Euler's steps leave of a decaying quantity, and what noise makes of it."""
 import numpy as np
-from graindrive import headless
+from graindrive.commands import headless
 from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.study import Cost, Observable, Study
 

@@ -10,10 +10,12 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import intruder, packing, yade_march
-from graindrive.errors import Interrupted
-from graindrive.material import HertzHistoryMaterial
-from graindrive.run_folder import RunFolder
+from graindrive.bodies import intruder
+from graindrive.beds import packing
+from graindrive.scenes import yade_march
+from graindrive.base.errors import Interrupted
+from graindrive.scenes.material import HertzHistoryMaterial
+from graindrive.runs.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 TINY = ["scale=smoke", "width=22", "height=14", "depth=6", "amplitude=1", "time=0.5", "period=0.5", "frames=1"]

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from graindrive import engines, intruder, lid, packing, scene
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.bodies import intruder
+from graindrive.beds import lid, packing
+from graindrive.scenes import scene
+from graindrive.base.errors import UsageError
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 SHAPES = ["disk", "square", "tall", "wide", "triangle"]

@@ -7,9 +7,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from graindrive import killtest
+from graindrive.commands import killtest
 from graindrive.postproc.reader import Run
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 

@@ -19,8 +19,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from graindrive import headless
-from graindrive.killtest import TIMED
+from graindrive.commands import headless
+from graindrive.commands.killtest import TIMED
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.study import Study
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import quantities
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 PERIOD, DT = 10.0, 0.25
 

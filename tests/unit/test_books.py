@@ -4,10 +4,11 @@ import math
 
 import pytest
 
-from graindrive.command_line import parse
-from graindrive.parameter_values import argument
+from graindrive.commands.command_line import parse
+from graindrive.commands.parameter_values import argument
 from graindrive.study import house, loaded
-from graindrive.tuning import book, held_out
+from graindrive.accuracy import book
+from graindrive.tuning import held_out
 
 SHIPPED = {made.file: made for made in book.shipped()}
 

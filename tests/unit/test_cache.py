@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from graindrive import cache
+from graindrive.beds import cache
 
 
 @pytest.fixture(autouse=True)
@@ -102,7 +102,7 @@ def test_a_build_that_fails_leaves_nothing(folder):
 
 
 BUILD = """
-import sys, numpy, graindrive.cache as c
+import sys, numpy, graindrive.beds.cache as c
 def build():
     print("building", flush=True)
     sys.stdin.read()

@@ -12,12 +12,12 @@ from made_up_runs import KEYS, write_run
 from graindrive.campaign import cost, execution
 from graindrive.campaign.__main__ import main, read_arguments
 from graindrive.campaign.plan import read_plan
-from graindrive.errors import UsageError
+from graindrive.base.errors import UsageError
 from graindrive.postproc.campaign import report, results
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.reader import RunError
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 TOY = Path(__file__).parents[1] / "faults" / "toy_study.py"
 GOOD = f"study: {TOY}\ncommon: {{scale: smoke, steps: 20}}\nsweeps:\n  a: {{seed: [1, 2]}}\n"

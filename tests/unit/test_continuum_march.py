@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from graindrive import continuum, signals
-from graindrive.continuum import FieldMeans, FlowMarch, centres
+from graindrive.continuum import continuum
+from graindrive.base import signals
+from graindrive.continuum.continuum import FieldMeans, FlowMarch, centres
 from graindrive.engines import TwoPhaseFlow
-from graindrive.errors import EngineError, Interrupted
+from graindrive.base.errors import EngineError, Interrupted
 
 N = 12
 

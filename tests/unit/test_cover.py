@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from graindrive import cover, intruder, packing
+from graindrive.bodies import cover, intruder
+from graindrive.beds import packing
 from graindrive.engines import Outline, clump_of
 from matplotlib.path import Path
 

@@ -5,14 +5,14 @@ import subprocess
 import numpy as np
 import pytest
 
-from graindrive import drum
+from graindrive.beds import drum
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.postproc import __main__ as command
 from graindrive.postproc.drum import animation
 from graindrive.postproc.drum.flow import BED_FRACTION
 from graindrive.postproc.drum.flow_frames import FlowFrames
 from graindrive.postproc.reader import Run
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 D, OMEGA, WALL = 40.0, 0.02, 126
 
@@ -123,7 +123,7 @@ def test_pictures_of_a_continuum_go_to_paraview_where_the_grains_are(tmp_path):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
-    from graindrive import exports
+    from graindrive.exports import exports
 
     out = make(tmp_path / "run", (0, 10), (0, 10))
     exports.write(out, ["vtk"])

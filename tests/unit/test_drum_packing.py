@@ -5,9 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from graindrive import drum, engines
-from graindrive.errors import UsageError
-from graindrive.material import SpringDashpotMaterial
+from graindrive.beds import drum
+from graindrive import engines
+from graindrive.base.errors import UsageError
+from graindrive.scenes.material import SpringDashpotMaterial
 
 GRAINS = SpringDashpotMaterial(1.6e5, 4.5e4, 0.5, 0.5, 1.0)
 HALF = drum.DrumRecipe(150.0, 475, 7700, 1.0, 1.2, GRAINS, 5e-4, 1e-3, 1)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from made_up_frames import PERIOD, made_up_run
 
-from graindrive import exports, text_exports
-from graindrive.errors import UsageError
+from graindrive.exports import exports, text_exports
+from graindrive.base.errors import UsageError
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import __main__ as command
-from graindrive.command_line import parameters_or_exit
+from graindrive.commands.command_line import parameters_or_exit
 from graindrive.postproc.reader import Run
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 from graindrive.study import Study
 
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import spheres
 from graindrive import engines
-from graindrive.fields import GRAIN, SI, SI_IN_SPACE, write_fields
+from graindrive.runs.fields import GRAIN, SI, SI_IN_SPACE, write_fields
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import fields as results
 from graindrive.postproc.figures import STYLE
 from graindrive.postproc.reader import Run, RunError
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 from yade import O
 
 

@@ -8,11 +8,14 @@ import pytest
 from made_up_frames import DT, Parameters
 from yade import O
 
-from graindrive import dragged_body, picture, scene, space, surfaces
-from graindrive.material import HertzRestitutionSpheres
+from graindrive.bodies import dragged_body
+from graindrive.solids import surfaces
+from graindrive.runs import picture
+from graindrive.scenes import scene, space
+from graindrive.scenes.material import HertzRestitutionSpheres
 from graindrive.postproc.lift import animation
 from graindrive.postproc.reader import INTRUDER, Frame, Run
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 D, SIDE, RADIUS = 1.0, 8.0, 1.5
 AT = np.array([7.5, SIDE / 2, 4.0])  # the cylinder goes through the periodic side

@@ -5,13 +5,17 @@ import extended_xyz
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, exports, grain_loop, picture, scene
-from graindrive.block_means import block_means
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.exports import exports
+from graindrive.loops import grain_loop
+from graindrive.runs import picture
+from graindrive.scenes import scene
+from graindrive.runs.block_means import block_means
+from graindrive.base.errors import UsageError
 from graindrive.postproc import quantities
 from graindrive.postproc.reader import Frame, Run
 from made_up_frames import DT, Parameters
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 from yade import O
 
 SIDE = 5

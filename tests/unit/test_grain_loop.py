@@ -1,8 +1,9 @@
 """From YADE's loop to GrainLoop and back: what cannot be taken back is said."""
 
 import pytest
-from graindrive import engines, grain_loop
-from graindrive.errors import UsageError
+from graindrive import engines
+from graindrive.loops import grain_loop
+from graindrive.base.errors import UsageError
 from yade import O
 
 

@@ -9,7 +9,8 @@ import disks
 import numpy as np
 import pytest
 import spheres
-from graindrive import engines, grain_loop, interaction_helpers
+from graindrive import engines
+from graindrive.loops import grain_loop, interaction_helpers
 from yade import O, _utils, utils, wrapper
 from yade.minieigenHP import Vector3
 

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import killtest
+from graindrive.commands import killtest
 
 
 @pytest.fixture

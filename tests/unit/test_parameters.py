@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 from pydantic import root_validator
 
-from graindrive.command_line import help_table, parameters_or_exit, parse
-from graindrive.errors import UsageError
+from graindrive.commands.command_line import help_table, parameters_or_exit, parse
+from graindrive.base.errors import UsageError
 from graindrive.parameters import StudyParameters, quantity
 from graindrive.study import Study
 
@@ -264,6 +264,7 @@ class TestBatchTable:
 
 
 def test_parsing_needs_neither_yade_nor_a_display():
-    code = "import sys, graindrive.headless, graindrive.recording, graindrive.study; sys.exit('yade' in sys.modules)"
+    modules = "graindrive.commands.headless, graindrive.runs.recording, graindrive.study"
+    code = f"import sys, {modules}; sys.exit('yade' in sys.modules)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0

@@ -3,7 +3,8 @@
 import disks
 import numpy as np
 import pytest
-from graindrive import grain_loop, picture
+from graindrive.loops import grain_loop
+from graindrive.runs import picture
 from graindrive.postproc.reader import Frame
 from yade import O
 
@@ -157,7 +158,8 @@ def test_a_single_disk_tells_how_far_it_has_turned():
 
 @pytest.mark.parametrize("fast", [False, True])
 def test_looking_changes_no_bit_and_leaves_a_scene_that_can_be_saved(tmp_path, fast):
-    from graindrive import engines, scene
+    from graindrive import engines
+    from graindrive.scenes import scene
 
     def everything(*, looking):
         grains, base, body = crowd()

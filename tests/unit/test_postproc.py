@@ -10,7 +10,7 @@ from graindrive.parameters import StudyParameters, quantity
 from graindrive.postproc import __main__ as command
 from graindrive.postproc.reader import Run, RunError
 from graindrive.postproc.wiggle import figure
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 
 
 class Parameters(StudyParameters):

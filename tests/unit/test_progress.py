@@ -6,11 +6,11 @@ import pytest
 
 pytest.importorskip("yade")
 
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive import progress_line  # noqa: E402
-from graindrive.progress import Timing, run_blocks  # noqa: E402
-from graindrive.progress_line import Calming  # noqa: E402
-from graindrive.yade_march import YadeMarch  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.runs import progress_line  # noqa: E402
+from graindrive.runs.progress import Timing, run_blocks  # noqa: E402
+from graindrive.runs.progress_line import Calming  # noqa: E402
+from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 
 @pytest.fixture

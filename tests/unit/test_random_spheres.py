@@ -5,8 +5,9 @@ import pytest
 
 pytest.importorskip("yade")
 
-from graindrive import engines, packing  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
+from graindrive import engines  # noqa: E402
+from graindrive.beds import packing  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
 
 BOX = (-5, 5, -5, 5, 0, 12)
 

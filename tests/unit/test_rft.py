@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from graindrive import outlines_for_lift
+from graindrive.bodies import outlines_for_lift
 from graindrive.postproc.lift import rft
 
 TILTS = np.radians([-67.5, -45, -22.5, 0, 22.5, 45, 67.5, 90])

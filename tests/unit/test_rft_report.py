@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from graindrive import outlines_for_lift
+from graindrive.bodies import outlines_for_lift
 from graindrive.campaign.plan import read_plan
 from graindrive.postproc.campaign.verdicts import Verdict
 from graindrive.postproc.lift import rft, rft_report

@@ -7,10 +7,10 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import run_data, run_folder
-from graindrive.errors import UsageError
+from graindrive.runs import run_data, run_folder
+from graindrive.base.errors import UsageError
 from graindrive.parameters import StudyParameters
-from graindrive.run_folder import RunFolder, plain
+from graindrive.runs.run_folder import RunFolder, plain
 
 
 def test_series_take_rows_and_blocks_of_rows(tmp_path):

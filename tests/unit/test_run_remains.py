@@ -8,11 +8,12 @@ import h5py
 import numpy as np
 import pytest
 
-from graindrive import checkpoint, recording, run_place, whole_files
-from graindrive.errors import UsageError
+from graindrive.runs import checkpoint, recording, run_place
+from graindrive.base import whole_files
+from graindrive.base.errors import UsageError
 from graindrive.parameters import StudyParameters, quantity
-from graindrive.run_folder import RunFolder
-from graindrive.run_place import AlreadyComplete
+from graindrive.runs.run_folder import RunFolder
+from graindrive.runs.run_place import AlreadyComplete
 
 STEPS = 8
 
@@ -288,7 +289,7 @@ def test_runs_that_fail_again_and_again_leave_one_folder(place):
 
 def test_a_run_that_goes_on_in_another_version_says_so(place, capsys, monkeypatch):
     place.interrupted()
-    monkeypatch.setattr("graindrive.provenance.code_version", lambda: "9.9")
+    monkeypatch.setattr("graindrive.runs.provenance.code_version", lambda: "9.9")
     place.run(resume=True)
     assert "this is 9.9; the result will be of both" in capsys.readouterr().err
     with h5py.File(place.path / "a/run.h5") as file:

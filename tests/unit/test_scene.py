@@ -8,9 +8,9 @@ import pytest
 
 pytest.importorskip("yade")
 
-from graindrive import scene  # noqa: E402
-from graindrive.errors import UsageError  # noqa: E402
-from graindrive.material import HertzHistoryMaterial  # noqa: E402
+from graindrive.scenes import scene  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
+from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
 
 MATERIAL = HertzHistoryMaterial(2e6, 2.46e6, 2500, 2500, 0.1, 1.0)
 

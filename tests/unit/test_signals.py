@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from graindrive import signals
-from graindrive.errors import Interrupted
+from graindrive.base import signals
+from graindrive.base.errors import Interrupted
 
 
 @pytest.mark.parametrize("number", signals.STOP_SIGNALS)
@@ -63,7 +63,7 @@ def test_ignored_signals_stay_ignored():
 def test_a_second_ctrl_c_after_the_run_s_end_leaves_no_traceback():
     late = "import atexit, os, signal; atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))"
     usual = "signal.signal(signal.SIGINT, signal.default_int_handler)"
-    program = f"{late}; {usual}; from graindrive import headless; headless.end(130)"
+    program = f"{late}; {usual}; from graindrive.commands import headless; headless.end(130)"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     ended = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
     assert ended.returncode == 130 and "KeyboardInterrupt" not in ended.stderr

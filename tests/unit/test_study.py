@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from graindrive.command_line import help_text, parse
-from graindrive.errors import UsageError
+from graindrive.commands.command_line import help_text, parse
+from graindrive.base.errors import UsageError
 from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.postproc import quantities
 from graindrive.postproc.reader import Run
-from graindrive.run_folder import RunFolder
+from graindrive.runs.run_folder import RunFolder
 from graindrive.study import Constant, Cost, Observable, Study, duration, house, loaded, observables
 
 

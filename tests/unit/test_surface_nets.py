@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from graindrive import surface_nets, surfaces
+from graindrive.solids import surface_nets, surfaces
 
 
 def volume(points, quads):

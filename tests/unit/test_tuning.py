@@ -6,14 +6,15 @@ import math
 import numpy as np
 import pytest
 
-from graindrive.command_line import parse
-from graindrive.errors import UsageError
+from graindrive.commands.command_line import parse
+from graindrive.base.errors import UsageError
 from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.study import Cost, Observable, Study
 from graindrive.tuning import __main__ as command
 from graindrive.postproc.tuning import held_out as held_out_report
-from graindrive.tuning import book, held_out, ladder
-from graindrive.tuning.effects import NOTHING, Effect, of_reference, pooled
+from graindrive.accuracy import book
+from graindrive.tuning import held_out, ladder
+from graindrive.accuracy.effects import NOTHING, Effect, of_reference, pooled
 from graindrive.tuning.search import BAD, FAILED, GOOD, SAVES_NOTHING, UNDECIDED, Search
 from graindrive.tuning.trials import Outcome, Trials
 

@@ -12,7 +12,7 @@ pytest.importorskip("vtkmodules")
 
 from graindrive.postproc.fields import Fields  # noqa: E402
 from graindrive.postproc.reader import Frame  # noqa: E402
-from graindrive.vtk_export import export, export_fields  # noqa: E402
+from graindrive.exports.vtk_export import export, export_fields  # noqa: E402
 
 UNITS = {"r": "d", "vx": "sqrt(g d)", "fn": "rho g d^2", "slip": "d"}
 BODY = {"beads": np.array([[-1.0, 0], [1.0, 0]]), "bead_radius": np.array(0.25)}

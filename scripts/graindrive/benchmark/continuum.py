@@ -4,7 +4,7 @@ import statistics
 import sys
 import time
 
-from .. import drum_continuum
+from ..continuum import drum_continuum
 
 NAME, LAW = "continuum", "mu_i"
 TURNED = 0.35  # rad by which a drum has turned before it is timed: its surface flows

@@ -17,8 +17,8 @@ import time
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from .. import surfaces
-from ..continuum import centres
+from ..solids import surfaces
+from ..continuum.continuum import centres
 from ..engines import TwoPhaseFlow
 from . import interfoam
 

@@ -1,6 +1,6 @@
 """Scenes of the benchmark in the cache: made once, read afterwards."""
 
-from .. import cache
+from ..beds import cache
 
 RECIPE = 2  # raise it when a scene comes out different
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import scene
+from ..scenes import scene
 
 GRAINS, BASE, LID = 1, 2, 3  # atom types
 AHEAD = 20  # largest radii of free height above and below all spheres

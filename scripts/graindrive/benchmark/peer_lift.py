@@ -21,9 +21,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import command_line, scene, study
-from ..errors import UsageError
-from ..whole_files import write_text
+from ..commands import command_line
+from ..scenes import scene
+from .. import study
+from ..base.errors import UsageError
+from ..base.whole_files import write_text
 from ..postproc.lift import forces
 from ..postproc.measured import Measured, mean_of
 from ..postproc.statistics import block_mean

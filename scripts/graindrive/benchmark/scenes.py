@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .. import channel
-from ..material import HertzHistoryMaterial
+from ..beds import channel
+from ..scenes.material import HertzHistoryMaterial
 from . import layout, lift
 from .kept import kept
 from .layout import DRIVEN, FREE, WALL

@@ -5,9 +5,9 @@ import os
 import sys
 from pathlib import Path
 
-from .. import output, signals
-from ..errors import UsageError
-from ..headless import guarded
+from ..base import output, signals
+from ..base.errors import UsageError
+from ..commands.headless import guarded
 from ..postproc.campaign.report import write_report
 from . import cost, execution
 from .plan import read_plan

@@ -2,7 +2,7 @@
 
 import statistics
 
-from .. import summary_file
+from ..runs import summary_file
 from ..study import duration
 
 

@@ -9,8 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from ..errors import Interrupted, UsageError
-from ..run_place import damage, set_aside, stored_digest
+from ..base.errors import Interrupted, UsageError
+from ..runs.run_place import damage, set_aside, stored_digest
 from . import plan_json
 
 PROGRAM = [sys.executable]  # that runs a study's file: YADE is a library there, which opens no port

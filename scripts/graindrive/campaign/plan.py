@@ -16,10 +16,10 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..command_line import parse
-from ..errors import UsageError, one_line
-from ..parameter_values import argument, nearest
-from ..plain_yaml import shortened
+from ..commands.command_line import parse
+from ..base.errors import UsageError, one_line
+from ..commands.parameter_values import argument, nearest
+from ..base.plain_yaml import shortened
 from ..study import house, loaded
 from .plan_file import read_plan_file
 

@@ -1,8 +1,8 @@
 """The YAML file of a campaign: its keys, each of the right kind."""
 
-from ..errors import UsageError, one_line
-from ..parameter_values import nearest
-from ..plain_yaml import read, shortened
+from ..base.errors import UsageError, one_line
+from ..commands.parameter_values import nearest
+from ..base.plain_yaml import read, shortened
 
 KEYS = ("study", "report", "common", "sweeps")
 

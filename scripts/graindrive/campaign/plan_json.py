@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from .. import whole_files
+from ..base import whole_files
 
 FILE = "campaign.json"
 NEEDED = {"name", "runs", "report"}  # without these it is no plan

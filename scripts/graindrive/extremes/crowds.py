@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from .. import scene, shear_cell
+from ..scenes import scene
+from ..beds import shear_cell
 from .few_grains import CLOSE, Grain, advance, duration, lattice, mass_of, place, said_by, spring
 from .outcome import GUARD, RIGHT, judged, largest
 

@@ -6,8 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import engines, grain_loop, scene, yade_march
-from ..errors import EngineError, UsageError
+from .. import engines
+from ..loops import grain_loop
+from ..scenes import yade_march
+from ..scenes import scene
+from ..base.errors import EngineError, UsageError
 
 R = 0.5  # radius of a usual grain [d]
 OWN = ("cundallStrack", "hertzMindlin")  # laws of YADE's own, for disks

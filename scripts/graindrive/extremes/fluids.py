@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from .. import drum_continuum, study
-from ..continuum import FlowMarch
+from ..continuum import drum_continuum
+from .. import study
+from ..continuum.continuum import FlowMarch
 from .few_grains import said_by
 from .outcome import BOUND, GUARD, RIGHT, judged
 

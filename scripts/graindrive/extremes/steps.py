@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from .. import engines, scene
+from .. import engines
+from ..scenes import scene
 from .few_grains import CLOSE, Grain, Law, R, advance, duration, lattice, mass_of, place, said_by, spring, state_of
 from .outcome import BOUND, GUARD, RIGHT, judged, largest
 
@@ -131,7 +132,7 @@ ALLOWED = 0.3  # an overlap that a user may allow [R]
 
 
 def deep_step(setting, *, dimensions):
-    """GrainLoop's own check is at 0.1 R, however deep grains may be pressed: what it takes over the step of an allowed 0.3 R."""
+    """The step up to which GrainLoop takes a scene whose grains may be pressed by 0.3 R, over the critical one there."""
     law = LAWS["hertz_restitution"]
     expected = theory(law, dimensions, ALLOWED, False)
 
@@ -146,10 +147,9 @@ def deep_step(setting, *, dimensions):
     stable = stays(law, setting, dimensions, 0.99 * found * expected, ALLOWED, sliding=False)
     sentence = (
         f"Hertz's law with largestOverlap = 0.3: step that GrainLoop takes over the critical one of a pair pressed so deep, which"
-        f" {'stays at rest' if stable else 'then swings up'}; the studies' own checks are at their largest_overlap"
+        f" {'stays at rest' if stable else 'then swings up'}"
     )
-    source = "stiffness as √δ: (0.3/0.1)^(1/4); GrainLoop checks at 0.1 R"
-    return judged(BOUND, found, (ALLOWED / DEEP) ** 0.25, TOLERANCE, source, sentence)
+    return judged(GUARD, found if stable else math.nan, 1.0, TOLERANCE, SOURCE, sentence)
 
 
 # Crystal --------------------------------------------------------------------------------------------------------------

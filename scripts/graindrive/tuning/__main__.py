@@ -6,22 +6,23 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .. import output, signals, whole_files
+from ..base import output, signals, whole_files
 from ..campaign import execution
-from ..command_line import split
-from ..errors import UsageError, one_line
-from ..headless import guarded
-from ..parameter_values import convert
+from ..commands.command_line import split
+from ..base.errors import UsageError, one_line
+from ..commands.headless import guarded
+from ..commands.parameter_values import convert
 from ..postproc.tuning import held_out as held_out_report
 from ..postproc.tuning.report import write_report
-from ..provenance import code_version, cpu_model
-from ..started import study_file
+from ..runs.provenance import code_version, cpu_model
+from ..commands.started import study_file
 from ..study import duration, loaded
-from . import book, choice, held_out, ladder
-from .effects import CONFIDENCE
+from ..accuracy import book, choice
+from . import held_out, ladder
+from ..accuracy.effects import CONFIDENCE
 from .search import MOST_SEEDS, Search
 from .trials import Trials
-from .words import in_words, shown
+from ..accuracy.words import in_words, shown
 
 NAME = "tune"
 USUAL = dict(budget="30min", target="5%", vary="", seeds=str(MOST_SEEDS), cores=str(os.cpu_count()), out="")

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..command_line import parse
-from ..errors import UsageError
-from ..parameter_values import argument
-from . import book as books
-from .effects import CONFIDENCE, NOTHING
+from ..commands.command_line import parse
+from ..base.errors import UsageError
+from ..commands.parameter_values import argument
+from ..accuracy import book as books
+from ..accuracy.effects import CONFIDENCE, NOTHING
 from .trials import Trial, Trials
-from .words import in_words
+from ..accuracy.words import in_words
 
 FIRST_SEED = 1001  # far from those of any tuning
 SLACK = 1.0001  # over a setting's bound: the accuracy for which it is just good enough

@@ -1,8 +1,8 @@
 """The settings that a study's levers can take, from the reference towards cheaper ones."""
 
-from ..command_line import parse
-from ..errors import UsageError, one_line
-from ..parameter_values import argument
+from ..commands.command_line import parse
+from ..base.errors import UsageError, one_line
+from ..commands.parameter_values import argument
 from ..parameters import plain_type
 
 MOST_RUNGS = 5

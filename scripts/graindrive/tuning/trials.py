@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import summary_file
+from ..runs import summary_file
 from ..campaign import execution
 from ..campaign.plan import Plan, planned_run
-from . import effects
-from .effects import NOTHING, pooled
+from ..accuracy import effects
+from ..accuracy.effects import NOTHING, pooled
 
 SWEEP = "tune"
 

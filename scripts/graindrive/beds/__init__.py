@@ -1,0 +1,1 @@
+"""Packings of grains, made once and kept in a cache."""

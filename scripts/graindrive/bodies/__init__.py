@@ -1,0 +1,1 @@
+"""Driven bodies: outlines of beads, and solids by distance."""

@@ -1,0 +1,207 @@
+"""From `key=value` arguments and YADE's batch tables to checked parameters, or to one line that says what is wrong."""
+
+import os
+import sys
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from .batch_table import evaluated, read_row
+from ..base.errors import UsageError, one_line
+from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
+from ..parameters import allowed, choices, digest, plain_type
+from ..accuracy import choice
+
+HELP_WORDS = ("help", "--help", "-h", "-help")
+
+
+def parameters_or_exit(study, arguments, environment=None):
+    """Return the parameters of a `Study` for `key=value` arguments (without the script's name), or end the program.
+
+    What the user gives on the command line or in a row of YADE's batch table wins over what a file of parameters holds, an
+    argument @FILE; these over the levers that `accuracy` chooses, these over the values of the scale, and these over a preset
+    study's own. `help` prints what the study knows and exits 0; a bad argument is one line on stderr, exit 2.
+    """
+    if any(argument in HELP_WORDS for argument in arguments):
+        print(help_text(study))
+        sys.exit(0)
+    try:
+        return parse(study, arguments, environment)
+    except UsageError as error:
+        print(f"{study.name}: error: {error}", file=sys.stderr)
+        sys.exit(UsageError.exit_code)
+
+
+def parse(study, arguments, environment=None):
+    """Return the parameters of a `Study` for these arguments; raises UsageError at the first that is wrong."""
+    cls = study.parameters
+    files = [argument[1:] for argument in arguments if argument.startswith("@")]
+    given = from_batch_row(cls, os.environ if environment is None else environment)
+    given = added(cls, given, [argument for argument in arguments if not argument.startswith("@")])
+    given = {**added(cls, {}, [a for file in files for a in arguments_of(Path(file), cls)]), **given}
+    values = {key: convert(cls.__fields__[key], text) for key, text in given.items()}
+    base = dict(study.defaults)
+    scale = values.get("scale", base.get("scale", cls.__fields__["scale"].default))
+    if scale not in study.presets:
+        raise UsageError(
+            f"{argument_text('scale', scale)} is not known to {study.name}; allowed: {', '.join(study.presets)}"
+        )
+    merged = {**base, **study.presets[scale], **values, "scale": scale}
+    taken = choice_by_accuracy(study, merged, values, given) if merged.get("accuracy") else None
+    merged.update(taken.levers if taken else {})
+    if not merged.get("out"):
+        merged["out"] = folder_name(
+            study.name, scale, {k: v for k, v in given.items() if k not in ("scale", "out")}, cls
+        )
+    p = build(cls, merged, given)
+    p._choice = taken
+    return p
+
+
+def added(cls, given, arguments):
+    """Return {key: text} of what is given and of further `key=value` arguments; UsageError for a key that is there already."""
+    given = dict(given)
+    for argument in arguments:
+        key, text = split(cls, argument)
+        if key in given:
+            raise UsageError(
+                f"{key} is given twice: {key}={one_line(given[key])} and {argument_text(key, text)}; keep one"
+            )
+        given[key] = text
+    return given
+
+
+def choice_by_accuracy(study, merged, values, given):
+    """Return the `Choice` of levers for the key accuracy; levers that the user gave are not in it."""
+    kept = {key: value for key, value in values.items() if key in study.levers}
+    usual = {**merged, "out": merged.get("out") or "."}
+
+    def made(levers):
+        return build(study.parameters, {**usual, **levers, **kept}, given)
+
+    return choice.chosen(study, merged["accuracy"], made, kept)
+
+
+def from_batch_row(cls, environment):
+    """Return {key: text} of the row of the batch table that `environment` names."""
+    given = {}
+    for heading, text in read_row(environment).items():
+        key, _ = split(cls, f"{heading}=")
+        given[key] = evaluated(text) if plain_type(cls.__fields__[key]) in (int, float) else text
+    return given
+
+
+def split(cls, argument):
+    """Return (key, text) of one `key=value`; raises UsageError with the nearest right spelling."""
+    key, sign, text = argument.partition("=")
+    key = key.strip()
+    bare = key.lstrip("-").replace("-", "_")
+    if not sign:
+        owner = next((k for k, f in cls.__fields__.items() if bare in choices(f)), None)
+        hint = f"{owner}={bare}" if owner else nearest(bare, cls.__fields__, "", "=…")
+        way_out = f"did you mean {hint}?" if hint else "help lists the keys"
+        raise UsageError(f"'{one_line(argument)}' is not of the form key=value; {way_out}")
+    require_key(cls, key)
+    return key, text.strip()
+
+
+def build(cls, merged, given):
+    """Return `cls(**merged)`; raises UsageError for the first value out of range, or for a condition between values."""
+    try:
+        return cls(**merged)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = first["loc"][0]
+        if key in cls.__fields__ and first["type"] != "value_error":
+            refuse(cls.__fields__[key], given.get(key, merged.get(key)))
+        prefix = f"{argument_text(key, given.get(key, merged.get(key)))}: " if key in cls.__fields__ else ""
+        raise UsageError(prefix + one_line(first["msg"], 400)) from None
+
+
+def folder_name(study, scale, given, cls):
+    """Return the default run folder: the study, its scale and the keys given."""
+    kept = {
+        k: v for k, v in given.items() if k == "accuracy" or cls.__fields__[k].field_info.extra.get("identity", True)
+    }
+    name = "-".join([study, scale] + [f"{key}_{value}" for key, value in sorted(kept.items())])
+    name = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in name)
+    return name if len(name) <= 120 else f"{name[:107]}-{digest(kept)}"
+
+
+def help_text(study):
+    """Return all that help says of a `Study`: its keys, then its levers, its observables and what it costs."""
+    parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
+    return "\n\n".join(
+        part for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study)] if part
+    )
+
+
+def help_table(study):
+    """Return the table of keys: key, unit, default (and what a scale changes), meaning and what is allowed."""
+    cls, presets, defaults = study.parameters, study.presets, study.defaults
+    rows = [("key", "unit", "default", "meaning")]
+    runs = {scale: study.usual(scale) for scale in presets}
+
+    def default_of(key):
+        usual = shown(defaults.get(key, cls.__fields__[key].default))
+        found = {
+            scale: taken_text(runs[scale], key) or shown(values.get(key, usual)) for scale, values in presets.items()
+        }
+        changed = [f"{scale}: {text}" for scale, text in found.items() if key in presets[scale] or text != usual]
+        return ", ".join(changed) if len(changed) == len(presets) else ", ".join([usual] + changed)
+
+    for key, field in cls.__fields__.items():
+        rows.append((key, cls.unit(key), default_of(key), f"{field.field_info.description} ({allowed(field)})"))
+    return aligned(rows)
+
+
+def levers_in_words(study):
+    """Return the paragraph of help on the parameters that trade accuracy for speed."""
+    unit = study.parameters.unit
+    rows = [
+        (
+            f"  {key}",
+            f"{shown_number(lever.reference)} {unit(key)}".removesuffix(" -"),
+            lever.cheaper if isinstance(lever.cheaper, str) else ", ".join(lever.cheaper),
+        )
+        for key, lever in study.levers.items()
+    ]
+    return aligned([("levers", "most accurate", "costs less when"), *rows]) if rows else ""
+
+
+def shown_number(value):
+    """Return a number without needless digits, a word as it is."""
+    return f"{value:g}" if isinstance(value, (int, float)) else value
+
+
+def observables_in_words(study):
+    """Return the paragraph of help on what the study measures; a star marks the headline."""
+    rows = [(f"{'*' if o.headline else ' '} {o.name}", o.unit, o.meaning) for o in study.observables]
+    return aligned([("observables of summary.json (* the headline)", "unit", "meaning"), *rows]) if rows else ""
+
+
+def costs(study):
+    """Return the line of help that says what a run of each scale costs."""
+    if study.cost is None:
+        return ""
+    words = [f"{scale} {study.cost.in_words(study.usual(scale))}" for scale in study.presets]
+    return f"cost on one core, packing aside: {'; '.join(words)}"
+
+
+def aligned(rows):
+    """Return rows of cells as lines, all columns but the last padded to one width."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
+    return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths)), row[-1]]).rstrip() for row in rows)
+
+
+def taken_text(p, key):
+    """Return for a key that is `auto` what is taken for it, "auto (46.2)"; "" for any other."""
+    taken = p.taken()[key]
+    return f"auto ({shown(taken)})" if getattr(p, key) is None and taken is not None else ""
+
+
+def shown(value):
+    """Return a default as the user would type it."""
+    if value is None:
+        return "auto"
+    return str(int(value)) if isinstance(value, bool) else str(value)

@@ -1,0 +1,123 @@
+"""Values of parameters, from the command line and from files, as the kind that their key declares, or refused by name."""
+
+import difflib
+import math
+
+from ..base.errors import UsageError, one_line
+from ..parameters import allowed, choices, plain_type
+from ..base.plain_yaml import read, shortened
+
+SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false": False, "no": False, "off": False}
+
+
+def require_key(cls, key):
+    """Raise UsageError with the nearest right spelling unless `key` is one of the class."""
+    if key not in cls.__fields__:
+        hint = nearest(str(key).lstrip("-").replace("-", "_"), cls.__fields__, "did you mean ", "? ")
+        raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
+
+
+def nearest(word, words, before, after):
+    """Return the one of `words` closest to `word`, between `before` and `after`, or nothing if none is close."""
+    found = difflib.get_close_matches(str(word).lower(), list(map(str, words)), n=1, cutoff=0.5)
+    return f"{before}{found[0]}{after}" if found else ""
+
+
+def argument_text(key, value):
+    """Return the argument as the user typed it, on one line."""
+    return f"{key}={one_line(value)}"
+
+
+def refuse(field, text):
+    """Raise the UsageError for a value that `field` does not take."""
+    hint = nearest(text, choices(field), " (did you mean ", "?)")
+    raise UsageError(
+        f"{argument_text(field.name, text)} is not allowed: {field.name} is {allowed(field)}{hint}"
+        f" - {field.field_info.description}"
+    )
+
+
+def convert(field, text):
+    """Return the text of one value as the type that `field` declares; raises UsageError."""
+    if field.allow_none and text.lower() == "auto":
+        return None
+    kind = plain_type(field)
+    try:
+        if kind is bool:
+            return SWITCH[text.lower()]
+        if kind is int:
+            return whole(text)
+        if kind is float:
+            return finite(float(text))
+    except (ValueError, KeyError, OverflowError):
+        refuse(field, text)
+    if kind is str and any(not c.isprintable() for c in text):
+        refuse(field, text)
+    return text
+
+
+def finite(number):
+    """Return `number`; raises ValueError if it is infinite or not a number."""
+    if not math.isfinite(number):
+        raise ValueError("not finite")
+    return number
+
+
+def whole(text):
+    """Return the integer that `text` writes, also as 1e5."""
+    try:
+        return int(text)
+    except ValueError:
+        number = float(text)
+        if not number.is_integer():
+            raise ValueError("not whole") from None
+        return int(number)
+
+
+# ---- files -----------------------------------------------------------------------------------------------------------
+
+
+def argument(parameters, key, value):
+    """Return a value of the file as the study's command line takes it; UsageError where it is of another kind than its key."""
+    require_key(parameters, key)
+    field = parameters.__fields__[key]
+    if isinstance(value, (dict, list)):
+        raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {shortened(value)}")
+    if value is None or (field.allow_none and value == "auto"):
+        return f"{key}=auto"
+    if not is_of_kind(plain_type(field), value):
+        refuse(field, f"'{value}'" if isinstance(value, str) and is_number(value) else as_written(value))
+    return f"{key}={int(value) if isinstance(value, bool) else value}"
+
+
+def is_of_kind(kind, value):
+    """True if a value of the file is what a key of that kind takes: bool, int, float, str, or None for a choice of words."""
+    if kind is bool:
+        return isinstance(value, (bool, int)) and value in (0, 1)
+    if kind in (int, float):
+        return isinstance(value, (int, float)) and not isinstance(value, bool)
+    return isinstance(value, str)
+
+
+def is_number(text):
+    """True for text that would be a number without its quotes."""
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def as_written(value):
+    """Return a value as it stands in the file."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def arguments_of(path, parameters):
+    """Return what a file of parameters holds, `key: value` lines of YAML, as `key=value` arguments; UsageError if it is none."""
+    content = read(path, "a file of parameters, key: value on each line")
+    if not isinstance(content, dict):
+        raise UsageError(f"{path} must hold key: value on each line, got {shortened(content)}")
+    try:
+        return [argument(parameters, key, value) for key, value in content.items()]
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None

@@ -1,0 +1,77 @@
+"""Runs started from Python: `run("wiggle", shape="star.csv", period=3)` makes a run, or finds it, and returns it opened."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from .command_line import parse
+from ..base.errors import EngineError, UsageError, one_line
+from .parameter_values import argument, nearest
+from ..postproc.reader import Run
+from ..study import house, loaded
+
+DONE, REFUSED = 0, UsageError.exit_code
+
+
+def run(study, *, progress=True, **keys):
+    """Return the `Run` of a study with these keys, as `scripts/run STUDY key=value …` makes it, in a process of its own.
+
+    `study` is one of this checkout's, or a .py file; `keys` are the study's, numbers, words and switches. A run that is there
+    already is not made again, one that was interrupted goes on with resume=True. Progress goes to stderr, line by line, if
+    asked for. Ctrl-C (a notebook's stop) ends the run, which keeps what it has. Raises UsageError for keys that the study
+    refuses and EngineError for a run that fails, with the study's own last words.
+    """
+    file = study_file(study)
+    known = loaded(file)
+    arguments = [argument(known.parameters, key, value) for key, value in keys.items()]
+    out = Path(parse(known, arguments, environment={}).out).expanduser().absolute()
+    arguments = [a for a in arguments if not a.startswith("out=")]
+    last = carried_out([sys.executable, str(file), *arguments, f"out={out}"], progress)
+    if last is not None:
+        code, words = last
+        raise (UsageError if code == REFUSED else EngineError)(words.removeprefix(f"{known.name}: error: "))
+    return Run(out)
+
+
+def study_file(study):
+    """Return the file of a study by its name in this checkout, or of a .py file; UsageError for neither."""
+    if str(study).endswith(".py"):
+        if not Path(study).is_file():
+            raise UsageError(f"there is no file {one_line(study)}")
+        return Path(study).resolve()
+    known = house()
+    if study not in known:
+        hint = nearest(study, known, "did you mean ", "? ")
+        raise UsageError(f"there is no study '{one_line(study)}'; {hint}there are: {' '.join(known)}")
+    return known[study]
+
+
+def carried_out(command, progress):
+    """Run a command to its end; return None, or (exit code, last words) of one that did not end well."""
+    environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    child = subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        env=environment,
+        text=True,
+        errors="replace",
+        process_group=0,
+    )
+    last = ""
+    try:
+        for line in child.stderr:
+            last = line.strip() or last
+            if progress:
+                print(line, end="", file=sys.stderr, flush=True)
+        code = child.wait()
+    except BaseException:
+        child.send_signal(signal.SIGINT)
+        child.wait()
+        raise
+    finally:
+        child.stderr.close()
+    return None if code == DONE else (code, last)

@@ -1,0 +1,1 @@
+"""The continuum solver as a March, and the continuum in a drum."""

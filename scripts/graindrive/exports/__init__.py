@@ -1,0 +1,1 @@
+"""A run's frames as files of other programs."""

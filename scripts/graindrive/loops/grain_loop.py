@@ -1,0 +1,179 @@
+"""Moves a scene built for YADE's loop over to GrainLoop, and back."""
+
+import uuid
+from dataclasses import dataclass
+
+from . import contact_springs
+from . import dimensions as dims
+from .. import engines
+from . import loop_laws, stand_ins, take_over, take_over_spheres
+from ..base.errors import UsageError
+
+TAG = "graindrive.exchange"  # in O.tags, which O.save keeps: which exchange the scene's GrainLoop comes from
+KEPT = 16  # exchanges, the oldest go first: scenes that were reset leave theirs behind
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """One take-over: YADE's loop, the energy tracker by which its scene is known, and the GrainLoop's name."""
+
+    loop: take_over.Loop
+    scene: object
+    made: str
+
+
+exchanged = {}  # tag of a scene -> Exchange
+
+
+def use_grain_loop(periods=None, dimensions=None, **settings):
+    """Replace YADE's four engines in O.engines by one GrainLoop with the same law, materials, damping and gravity; return it.
+
+    Other engines stay in their order, before it or, where they stood behind NewtonIntegrator, behind it.
+    `dimensions` is 2 for disks in a plane z = const and 3 for spheres in space. By default the scene says: 3 if some
+    sphere or clump may leave the plane (its blockedDOFs lack one of z, X, Y) and something takes bodies out of it,
+    which is centres at different z, a motion along z or a turn about x or y, or gravity along z; else 2. Say 3 where a
+    drive or a force will lift a body out of a plane in which all lie.
+    `periods` are the lengths after which the box repeats, (x, y) for disks, (x, y, z) for spheres, 0 where it does not; by
+    default those of O.cell. A cell that is long on purpose runs faster with 0 there. Other `settings` (precision, threads,
+    syncEvery, ...) go to GrainLoop. Present contacts keep their tangential springs. Labels of YADE's four engines and of
+    their functors then refuse to be read or set (`stand_ins`).
+
+    Contacts of a step see driven and frozen bodies with the velocities of the step before, and free disks as engines before
+    GrainLoop (TranslationEngine, a PyRunner) have left them. On YADE's loop it depends on whether the engine stands before
+    or behind InteractionLoop; the difference is a delay of one step. A contact of a frozen disk that is set in motion takes
+    the reduced mass of the pair anew, and YADE's keeps that of before.
+
+    Raises UsageError for what GrainLoop does not do (`take_over.RULES`, of spheres also `take_over_spheres.RULES`,
+    `loop_laws`), ValueError for bodies and cells that it cannot move, RuntimeError for engines that it does not know;
+    O.engines then stays as it was.
+    """
+    from yade import O
+
+    loop = take_over.yades_loop()
+    take_over.require(loop)
+    dimensions = dims.of_scene(loop.newton) if dimensions is None else dimensions
+    if dimensions == 3:
+        take_over.require(loop, take_over_spheres.RULES)
+    of_scene = {
+        **loop_laws.law_settings(loop.contacts),
+        **loop_laws.damping_settings(loop.newton),
+        **contact_springs.springs_of(loop.contacts, dimensions),
+    }
+    periods = dims.periods_of_scene(periods, dimensions)
+    given = dict(dimensions=dimensions, gravity=loop.newton.gravity, periods=periods)
+    made = engines.GrainLoop(**{**given, **of_scene, **settings})
+    before = O.engines
+    O.engines = loop.with_grain_loop(made)
+    try:
+        made.requireScene()
+    except Exception:
+        O.engines = before
+        raise
+    O.interactions.clear()  # GrainLoop does not follow them; its own contacts are in contacts()
+    O.forces.reset(resetAll=False)  # those of YADE's last step, which ForceResetter would erase in the next one
+    note_exchange(loop, made)
+    stand_ins.put(loop)
+    take_over.warn_of_runners()
+    return made
+
+
+def note_exchange(loop, made):
+    """Remember which engines `made` replaced, for this scene and copies of it that O.load makes."""
+    from yade import O
+
+    O.tags[TAG] = uuid.uuid4().hex
+    exchanged[O.tags[TAG]] = Exchange(loop, O.energy, str(made))
+    while len(exchanged) > KEPT:
+        del exchanged[next(iter(exchanged))]
+
+
+def exchange_of(made):
+    """Return the tag of the exchange that the scene's GrainLoop comes from; UsageError if there is none in this session.
+
+    A scene that was loaded holds another GrainLoop than the one that was saved, and another energy tracker.
+    """
+    from yade import O
+
+    tag = O.tags[TAG] if TAG in O.tags.keys() else None
+    exchange = exchanged.get(tag)
+    if exchange is None or (exchange.scene == O.energy and exchange.made != str(made)):
+        raise UsageError(
+            "the GrainLoop in O.engines was not made for this scene by use_grain_loop in this session;"
+            " put YADE's engines into O.engines yourself"
+        )
+    return tag
+
+
+def use_yade_loop():
+    """Put YADE's own engines back in place of the GrainLoop that `use_grain_loop` made; all bodies are brought up to date.
+
+    Contacts are found anew and get the tangential springs that they have now; gravity, friction and constants of the law
+    go along if they were changed.
+    """
+    from yade import O
+
+    loop = find("GrainLoop")
+    tag = exchange_of(loop)
+    if loop.walls or loop.loads:
+        raise UsageError(
+            "YADE's loop has no flat walls and loads of GrainLoop's; remove them (removeWall, setLoad) first"
+        )
+    loop.sync()
+    before = exchanged[tag].loop
+    hand_settings_back(loop, before)
+    del exchanged[tag]
+    if O.periodic:
+        before.newton.prevVelGrad = (
+            O.cell.velGrad
+        )  # bodies have followed it: no change that NewtonIntegrator must make up for
+    O.engines = before.put_back(O.engines)
+    make_contacts_anew(before, loop)
+
+
+def hand_settings_back(loop, before):
+    """Give YADE's engines gravity, damping and the law's constants as GrainLoop has them now.
+
+    UsageError where they belong to materials and YADE's own laws: those are the user's to change.
+    """
+    law2, ip2 = before.contacts.lawDispatcher.functors[0], before.contacts.physDispatcher.functors[0]
+    if type(law2).__name__ not in loop_laws.OUR_LAWS:
+        for key, value in loop_laws.law_settings(before.contacts).items():
+            if getattr(loop, key) != value:
+                raise UsageError(
+                    f"GrainLoop.{key} is {getattr(loop, key)}, and {value} in the scene's materials and functors;"
+                    " make them equal before going back"
+                )
+    before.newton.gravity, before.newton.damping, before.newton.dampGravity = (
+        loop.gravity,
+        loop.damping,
+        loop.dampGravity,
+    )
+    if getattr(ip2, "friction", -1) >= 0:
+        ip2.friction = loop.friction
+    for key in loop_laws.OUR_ATTRIBUTES:
+        if hasattr(law2, key):
+            setattr(law2, key, getattr(loop, key))
+
+
+def make_contacts_anew(loop, of):
+    """Have YADE find all contacts of the present positions, in a step that takes no time, with the springs of a GrainLoop."""
+    from yade import O
+
+    engines_of_scene, dt, clock = O.engines, O.dt, (O.iter, O.time)
+    O.interactions.clear()
+    loop.collider()  # at once: in a step it may wait until something has moved
+    O.engines, O.dt = list(loop), 0
+    O.run(1, True)  # in the loop's own thread: forces of engines that are called by hand are not cleared
+    O.engines, O.dt = engines_of_scene, dt
+    engines.set_clock(O._sceneObj, *clock)
+    contact_springs.give_springs(loop.contacts, of)
+
+
+def find(name):
+    """Return the engine of O.engines of that class; UsageError if there is none."""
+    from yade import O
+
+    for engine in O.engines:
+        if type(engine).__name__ == name:
+            return engine
+    raise UsageError(f"O.engines must hold a {name}; it holds {', '.join(type(e).__name__ for e in O.engines)}")

@@ -1,0 +1,74 @@
+"""What stands under the labels of engines that GrainLoop replaced: to read or set them says so, in place of doing nothing.
+
+YADE makes each label a name of Python's builtins. `newton.gravity = …` would go to an engine that no longer acts.
+"""
+
+import builtins
+
+from ..base.errors import UsageError
+
+NEAREST = {  # attribute of YADE's engines and functors -> that of GrainLoop, where names differ
+    "verletDist": "skin",
+    "betan": "normalDampingRatio",
+    "betas": "tangentialDampingRatio",
+    "frictAngle": "friction",
+}
+
+
+class StandIn:
+    """A name that answers everything with the way out; `label` and `name` are those of the engine that is gone."""
+
+    def __init__(self, label, name):
+        object.__setattr__(self, "_is", (label, name))
+
+    def __repr__(self):
+        label, name = object.__getattribute__(self, "_is")
+        return f"<{label}: {name}, which GrainLoop replaced>"
+
+    def __getattribute__(self, key):
+        if key.startswith("_"):  # Python's own questions, such as for a class or a documentation
+            return object.__getattribute__(self, key)
+        raise refusal(self, key, "read")
+
+    def __setattr__(self, key, value):
+        raise refusal(self, key, "assign")
+
+    def __call__(self, *args, **keys):
+        raise refusal(self, "", "call")
+
+
+def refusal(stand_in, key, verb):
+    """Return the UsageError that names the label, the engine and the attribute of GrainLoop to take in its place."""
+    label, name = object.__getattribute__(stand_in, "_is")
+    return UsageError(f"{label} is {name}, which GrainLoop replaced: {way_out(key, verb)}")
+
+
+def way_out(key, verb):
+    """Return in words what to do in place of reading or assigning an attribute."""
+    from yade.wrapper import Engine
+
+    from ..engines import GrainLoop
+
+    taken = NEAREST.get(key, key)
+    if key and hasattr(GrainLoop, taken) and not hasattr(Engine, taken):
+        return f"{verb} loop.{taken}, where loop is what use_grain_loop returned"
+    return "use_yade_loop() brings it back"
+
+
+def put(loop):
+    """Let the labels of a `take_over.Loop` and of its functors stand for what is gone; O.engines = … gives them back."""
+    for label, engine in labelled(loop).items():
+        if getattr(builtins, label, None) == engine:
+            setattr(builtins, label, StandIn(label, type(engine).__name__))
+
+
+def labelled(loop):
+    """Return the engines and functors of a `take_over.Loop` that have a label: dict label -> engine."""
+    dispatchers = (
+        loop.collider.boundDispatcher,
+        loop.contacts.geomDispatcher,
+        loop.contacts.physDispatcher,
+        loop.contacts.lawDispatcher,
+    )
+    parts = [*loop, *dispatchers, *(functor for dispatcher in dispatchers for functor in dispatcher.functors)]
+    return {part.label: part for part in parts if part.label}

@@ -1,0 +1,1 @@
+"""One scene with numbers of different length."""

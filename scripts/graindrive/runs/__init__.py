@@ -1,0 +1,1 @@
+"""Run folders: what a run records, keeps, resumes and says while it grows."""

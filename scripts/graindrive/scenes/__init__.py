@@ -1,0 +1,1 @@
+"""Scenes in YADE: materials, disks in a plane, spheres in a box."""
