@@ -101,3 +101,34 @@ TEST(Box, periodic_sides_have_no_end)
 	Stepper<2> loop(s);
 	EXPECT_EQ(last_words(loop, 10000), "");
 }
+
+TEST(Overlaps, grains_that_would_pass_through_each_other_between_two_looks_are_seen)
+{
+	for (const double speed : { 30., 100., 300. }) {  // half a diameter in 17 to 2 steps: between the looks at steps 0 and 100
+		Scene<2> s;
+		s.law = hertz();
+		s.dt = 1e-3;
+		s.grains = { disk(0, 0), disk(5 * speed * s.dt + 1.01, 0) };
+		s.grains[1].velocity[0] = -speed;
+		Stepper<2> loop(s);
+		EXPECT_TRUE(mentions(last_words(loop, 90), "overlap by")) << speed;
+	}
+}
+
+TEST(Overlaps, the_step_must_bear_the_overlap_that_stops_the_run)
+{
+	Scene<2> s;
+	s.law = hertz();
+	s.grains = { disk(0, 0), disk(2, 0) };
+	s.dt = 1;
+	const double shallow = critical_time_step(s, 0.1), deep = critical_time_step(s, 0.4);
+	EXPECT_NEAR(shallow / deep, std::sqrt(2.), 0.05);  // (0.4/0.1)^(1/4) without dashpots
+	s.dt = 1.01 * deep;
+	EXPECT_EQ(complaint([&] { Stepper<2> loop(s); }), "");
+	Guards<2> guards;
+	guards.largest_overlap = 0.4;
+	EXPECT_TRUE(mentions(complaint([&] { Stepper<2> loop(s, guards); }), "at the overlap of 0.4 R that stops the run"));
+	guards.largest_overlap = 0.01;
+	s.dt = 1.01 * shallow;
+	EXPECT_EQ(complaint([&] { Stepper<2> loop(s, guards); }), "");
+}

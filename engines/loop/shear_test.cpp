@@ -291,7 +291,7 @@ TEST(Shear, the_ledger_books_the_power_of_the_shear_and_closes_over_a_hundred_st
 	Scene<2> s = sheared_crowd(8, 11, shear_rate);
 	s.law = hertz(0.3, 1500), s.dt = 2e-4;
 	Stepper<2> loop(s);
-	loop.guarding().largest_overlap = 0.3;
+	loop.guarding().largest_overlap = 0.4;
 	loop.step(5000);
 	loop.track_energy(true);
 	const double dt = s.dt;

@@ -11,7 +11,7 @@ import pytest
 from drum_study import STUDIES, assert_same, carry_out
 from known_names import unexplained
 
-from graindrive.continuum.continuum import drum_continuum
+from graindrive.continuum import drum_continuum
 from graindrive.exports import exports
 from graindrive.continuum.continuum import FlowMarch
 from graindrive.base.errors import EngineError, Interrupted, UsageError
