@@ -5,7 +5,6 @@ from functools import reduce
 
 import numpy as np
 
-from .figures import BLACK
 from .reader import RunError
 
 LABELS = {
@@ -139,7 +138,7 @@ def draw_streamlines(axes, fields, phase=None, least_fraction=0.02, **options):
     """
     empty = ~(fields.map(fields.fraction, phase) >= least_fraction)
     v_x, v_y = (np.ma.masked_where(empty, component) for component in fields.velocity(phase))
-    options = {"color": BLACK, "linewidth": 0.5, "arrowsize": 0.5, "density": 1.2, **options}
+    options = {"color": "black", "linewidth": 0.5, "arrowsize": 0.5, "density": 1.2, **options}
     lines = axes.streamplot(fields.x, fields.y, v_x, v_y, **options)
     half = (fields.x[1] - fields.x[0]) / 2 if len(fields.x) > 1 else 0.5
     axes.set(xlim=(fields.x[0] - half, fields.x[-1] + half), ylim=(fields.y[0] - half, fields.y[-1] + half))

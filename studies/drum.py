@@ -41,7 +41,7 @@ import numpy as np  # noqa: E402
 
 from graindrive.beds import drum, lid  # noqa: E402
 from graindrive.continuum import drum_continuum  # noqa: E402
-from graindrive import engines  # noqa: E402
+from graindrive.lazily import Lazily, engines  # noqa: E402
 from graindrive.runs import fields, picture, progress  # noqa: E402
 from graindrive.commands import headless  # noqa: E402
 from graindrive.runs import recording  # noqa: E402
@@ -50,8 +50,7 @@ from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import SpringDashpotMaterial  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.drum import animation, blocks, figure  # noqa: E402
-from graindrive.postproc.drum.campaign import REPORT  # noqa: E402
+from graindrive.postproc.drum import blocks  # noqa: E402
 from graindrive.postproc.drum.flow import SURFACE_LEVEL, SURFACE_REACH  # noqa: E402
 from graindrive.postproc.drum.steady import FEWEST_ROWS, STRETCHES, centre_angle, is_steady  # noqa: E402
 from graindrive.postproc.statistics import block_mean  # noqa: E402
@@ -554,9 +553,9 @@ STUDY = Study(
     cost=Cost(work, lambda p: work(p) / core_seconds(p), unit="grain- or cell-steps"),
     check=check,
     run=run,
-    figure=figure.draw,
-    film=animation.film,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.drum.figure", "draw"),
+    film=Lazily("graindrive.postproc.drum.animation", "film"),
+    report=Lazily("graindrive.postproc.drum.campaign", "REPORT"),
     constants={
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
         "grain_mass": Constant(GRAIN_MASS, "rho d^2", "m, of a disk of d"),

@@ -36,9 +36,8 @@ from graindrive.commands import headless  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.extremes.outcome import Setting  # noqa: E402
 from graindrive.extremes.table import CASES  # noqa: E402
+from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
-from graindrive.postproc.extremes.campaign import REPORT  # noqa: E402
-from graindrive.postproc.extremes.figure import draw  # noqa: E402
 from graindrive.study import Cost, Observable, Study  # noqa: E402
 
 LONG = "bound_pair"  # cases that hear `pair_steps`
@@ -131,8 +130,8 @@ STUDY = Study(
     cost=Cost(core_seconds, 1.0, "core-seconds"),
     check=check,
     run=run,
-    figure=draw,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.extremes.figure", "draw"),
+    report=Lazily("graindrive.postproc.extremes.campaign", "REPORT"),
 )
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ import numpy as np  # noqa: E402
 
 from graindrive.bodies import dragged_body, intruder  # noqa: E402
 from graindrive.runs import driven, fields, progress  # noqa: E402
-from graindrive import engines  # noqa: E402
+from graindrive.lazily import Lazily, engines  # noqa: E402
 from graindrive.commands import headless  # noqa: E402
 from graindrive.runs import recording  # noqa: E402
 from graindrive.scenes import scene, space  # noqa: E402
@@ -51,8 +51,7 @@ from graindrive.base.errors import UsageError, one_line  # noqa: E402
 from graindrive.scenes.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.lift import animation, figure, forces  # noqa: E402
-from graindrive.postproc.lift.campaign import REPORT  # noqa: E402
+from graindrive.postproc.lift import forces  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
@@ -503,9 +502,9 @@ STUDY = Study(
     cost=Cost(particle_steps, RATE),
     check=check,
     run=run,
-    figure=figure.draw,
-    film=animation.film,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.lift.figure", "draw"),
+    film=Lazily("graindrive.postproc.lift.animation", "film"),
+    report=Lazily("graindrive.postproc.lift.campaign", "REPORT"),
     constants={
         "d": Constant(D, "m", "diameter of the grains"),
         "density": Constant(DENSITY, "kg/m^3", "of the grains"),

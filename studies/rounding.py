@@ -44,8 +44,8 @@ from graindrive.runs import recording  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.rounding.number_types import TRUTH, TYPES  # noqa: E402
 from graindrive.parameters import StudyParameters, quantity  # noqa: E402
-from graindrive.postproc.rounding import averages, distances, figure  # noqa: E402
-from graindrive.postproc.rounding.campaign import REPORT  # noqa: E402
+from graindrive.lazily import Lazily  # noqa: E402
+from graindrive.postproc.rounding import averages, distances  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 
 # Parameters -----------------------------------------------------------------------------------------------------------
@@ -311,8 +311,8 @@ STUDY = Study(
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
-    figure=figure.draw,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.rounding.figure", "draw"),
+    report=Lazily("graindrive.postproc.rounding.campaign", "REPORT"),
     constants={
         "stiffness": Constant(STIFFNESS, "m/t_0^2", "k_n of two disks"),
         "time_step": Constant(TIME_STEP, "t_0", "at dt_factor=1"),

@@ -44,9 +44,8 @@ from graindrive.runs import progress, recording  # noqa: E402
 from graindrive.beds import shear_cell  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.shear import figure  # noqa: E402
-from graindrive.postproc.shear.campaign import REPORT  # noqa: E402
 from graindrive.postproc.shear.flow import UNITS, steady_flow  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
@@ -99,7 +98,7 @@ class ShearParameters(StudyParameters):
 
 PRESETS = {
     "smoke": dict(grains=100, settle_strain=3, strain=6, dt_factor=2),
-    "demo": dict(dt_factor=2),
+    "demo": dict(grains=800, strain=12, dt_factor=4),
     "paper": dict(grains=4000, strain=20),
 }
 
@@ -258,8 +257,8 @@ STUDY = Study(
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
-    figure=figure.draw,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.shear.figure", "draw"),
+    report=Lazily("graindrive.postproc.shear.campaign", "REPORT"),
     constants={
         "d_largest": Constant(shear_cell.LARGEST, "d", "largest diameter; the smallest is d"),
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),

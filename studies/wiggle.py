@@ -12,25 +12,12 @@ T = 1 by the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 d
 presses for the bed that the demo leaves out (0.84 rho g d for each d of it); lid_pressure=auto, the default, follows the depth.
 The smoke run has no lid, to be quick.
 
-What a cheaper scene changes, for the disk at A = 3, time = 100: V_y in sqrt(g d) of two or three seeds, with errors widened to
-their scatter, and the seconds that a run took of one busy core (studies/campaigns/wiggle_scene.yaml; studies/RESULTS.md):
-
-    scene                                    T = 1          T = 2          T = 4          cost
-    300 x 195 d, depth 105 d, dt x 5         -0.03 +- 0.03   0.06 +- 0.02   0.06 +- 0.01   420 to 550 s
-    120 x 90 d, depth 50 d, rigid lid        -0.03 +- 0.04   0.03 +- 0.01   0.09 +- 0.02   65 to 110 s
-    the same, dt x 2.5                                       0.06 +- 0.01                  90 s
-    the same, dt x 1                         -0.04 +- 0.05   0.06 +- 0.03                  200 to 245 s
-    120 x 90 d, depth 50 d, lid of grains    -0.17 +- 0.07   0.05 +- 0.02   0.08 +- 0.01   60 to 120 s
-    120 x 90 d, depth 50 d, no lid           -0.08 +- 0.03  -0.06 +- 0.02   0.11 +- 0.02   50 to 140 s
-    80 x 60 d, depth 30 d, rigid lid          0.00 +- 0.04   0.05 +- 0.02   0.06 +- 0.01   30 to 60 s
-
-Depth is pressure: without the weight of what lies above the disk sinks at T = 2 where it should rise, four errors off. At A = 3
-no scene under a rigid lid differs from the full one by two errors, nor does the time step. At A = 5 the cheaper scene seems
-too small: at T = 2 the disk sinks in the full one and rises under the lid, a difference of 0.10 +- 0.04; at T = 3 it rises in
-both. So the first rising period of the disk lies between 2 and 3 in the full scene, as in Table 1 (2.5 to 3), and below 2 in
-the cheaper one. Heavy grains break into the cavity of a body at 30 d and bury it (lid=grains in the last scene). Seeds scatter
-by 1.5 times what one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the
-surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
+What cheaper settings change stands at the end of help, measured by `scripts/tune wiggle`; what cheaper scenes change, for the disk
+at A = 3 and 5, in studies/RESULTS.md (`wiggle_scene`). In short: depth is pressure, so a shallow scene needs the lid (without it
+the disk sinks at T = 2 where it should rise); under a rigid lid no scene at A = 3 differs from the full one by two errors; at A = 5
+the demo's scene is too small (at T = 2 the disk sinks in the full one and rises under the lid). Seeds scatter by 1.5 times what
+one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the surface, 105 d; in
+100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
@@ -49,7 +36,7 @@ import house  # noqa: E402, F401
 import numpy as np  # noqa: E402
 
 from graindrive.runs import driven, fields, progress  # noqa: E402
-from graindrive import engines  # noqa: E402
+from graindrive.lazily import Lazily, engines  # noqa: E402
 from graindrive.commands import headless  # noqa: E402
 from graindrive.bodies import intruder  # noqa: E402
 from graindrive.beds import lid, packing  # noqa: E402
@@ -60,8 +47,6 @@ from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drift import SKIPPED, drift, phase_rates  # noqa: E402
-from graindrive.postproc.wiggle import animation, figure  # noqa: E402
-from graindrive.postproc.wiggle.campaign import REPORT  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
 from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
@@ -371,9 +356,9 @@ STUDY = Study(
     cost=Cost(particle_steps, RATE),
     check=check,
     run=run,
-    figure=figure.draw,
-    film=animation.film,
-    report=REPORT,
+    figure=Lazily("graindrive.postproc.wiggle.figure", "draw"),
+    film=Lazily("graindrive.postproc.wiggle.animation", "film"),
+    report=Lazily("graindrive.postproc.wiggle.campaign", "REPORT"),
     constants={
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
         "papers_depth": Constant(PAPERS_DEPTH, "d", "of the body's centre in the paper"),

@@ -219,7 +219,7 @@ def test_a_study_file_is_a_command_under_yade_batch_and_in_scripts_run_by_its_pa
     batch = subprocess.run(["yade-batch", "-j2", "table", "oscillator.py"], **pipes)
     assert batch.returncode == 0 and batch.stdout.count("exit status 0") == 2, batch.stdout + batch.stderr
     runs = sorted(path.parent.name for path in place.glob("*/summary.json"))
-    assert runs == ["oscillator-demo-damping_0.1", "oscillator-demo-damping_0.2"]
+    assert runs == ["oscillator-demo-damping=0.1", "oscillator-demo-damping=0.2"]
     skip_where_it_would_build(RUN)
     assert subprocess.run([RUN, "oscillator.py", "out=r"], **pipes).returncode == 0
     assert (place / "r" / "summary.json").exists()

@@ -54,7 +54,7 @@ def place(tmp_path, monkeypatch):
 def test_a_run_comes_back_opened_and_is_made_once(place, capfd):
     run = graindrive.run("counter.py", number=5)
     assert run.summary["sum"] == 10 and list(run.series["count"]) == [0, 1, 2, 3, 4]
-    assert run.path == place / "counter-demo-number_5" and "counter: done" in capfd.readouterr().err
+    assert run.path == place / "counter-demo-number=5" and "counter: done" in capfd.readouterr().err
     when = (run.path / "run.h5").stat().st_mtime_ns
     again = graindrive.run(place / "counter.py", number=5, progress=False)
     assert (again.path / "run.h5").stat().st_mtime_ns == when and capfd.readouterr().err == ""

@@ -43,3 +43,16 @@ def test_accuracy_finds_a_book_in_each_of_its_scenes(studies, name):
             p = parse(study, [*keys, f"accuracy={error:.6g}"], environment={})
             assert p.choice.book.file == name, p.choice.words
             assert p.choice.bound(study.headline.name) <= error and math.isfinite(error)
+
+
+@pytest.mark.parametrize("name", ["lift_demo.json", "magnus_demo.json", "shear_demo.json"])
+def test_the_demo_takes_levers_that_were_measured(studies, name):
+    """A demo's levers are a setting of its book, whose bias lies within 15 % at 90 % confidence."""
+    made = SHIPPED[name]
+    study = studies[made.study]
+    demo = study.usual("demo")
+    assert made.outside(demo) == ""
+    alike = [s for s in made.settings if all(book.alike(getattr(demo, k), v) for k, v in made.levers_of(s).items())]
+    assert len(alike) == 1, made.settings
+    effect = alike[0].effects[study.headline.name]
+    assert abs(effect.bias) + effect.interval(0.9) < 0.15

@@ -68,7 +68,7 @@ def test_names_depend_on_the_parameters_alone(plan):
 
 def test_names_tell_what_is_unusual_and_end_with_the_digest(plan):
     (run, _) = plan(GOOD.replace("[1, 2]", "[8, 9]")).runs
-    assert run.name == f"toy_study-seed_8-steps_20-{run.parameters.digest()}"
+    assert run.name == f"toy_study-steps=20-seed=8-{run.parameters.digest()[:8]}"
 
 
 def test_names_of_many_long_values_stay_short_and_different(plan):

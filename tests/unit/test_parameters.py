@@ -117,7 +117,7 @@ def test_a_scale_that_the_study_lacks():
 
 def test_default_folder_is_readable_and_differs_between_runs():
     assert parsed().out == "wiggle-demo"
-    assert parsed("period=2", "scale=smoke", "resume=1").out == "wiggle-smoke-period_2"
+    assert parsed("period=2", "scale=smoke", "resume=1").out == "wiggle-smoke-period=2"
     assert parsed("out=here").out == "here"
     assert len(parsed("period=2." + "0" * 200).out) <= 120
     assert "/" not in parse(study("a/b"), ["period=2"], environment={}).out

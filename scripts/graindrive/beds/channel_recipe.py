@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from . import packing
 from ..base.errors import UsageError
 from ..scenes.material import HertzHistoryMaterial

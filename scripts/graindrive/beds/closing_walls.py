@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..runs import progress
 from ..scenes import scene
 from .channel_recipe import finished, insert, mean_area, radii_for

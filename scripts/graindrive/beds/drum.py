@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from . import cache, packing
-from .. import engines
+from ..lazily import engines
 from ..scenes import scene
 from ..base.errors import UsageError
 from ..scenes.material import SpringDashpotMaterial

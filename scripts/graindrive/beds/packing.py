@@ -7,7 +7,7 @@ import numpy as np
 
 from . import cache, lid
 from ..bodies import cover
-from .. import engines
+from ..lazily import engines
 from ..runs import progress
 from ..scenes import scene
 from ..base.errors import UsageError

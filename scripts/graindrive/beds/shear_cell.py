@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..loops import grain_loop
 from ..scenes import scene
 from ..base.errors import UsageError

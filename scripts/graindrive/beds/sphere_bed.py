@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from . import cache, packing
-from .. import engines
+from ..lazily import engines
 from ..runs import progress
 from ..scenes import scene, space
 from ..solids import surfaces

@@ -36,7 +36,7 @@ import tempfile
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..study import house, loaded
 from . import continuum, drum_newtonian, features, lammps, layout, liggghts
 from .scenes import SCENES, scene, with_restitution

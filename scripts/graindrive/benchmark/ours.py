@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from . import features, layout
 from .layout import DRIVEN, FREE, WALL
 

@@ -1,7 +1,6 @@
 """Disks that cover the inside of an outline, so that a packing puts no grain there."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 SAMPLES = 16  # points on the outline per spacing of the grid: distances to it are good to 1/2000 of the spacing
 MARGIN = 1e-3  # of the spacing, more than that error: a disk that would only just touch the outline is left out
@@ -13,6 +12,8 @@ def disks_inside(outline, spacing):
     They have the radius `spacing` and stand on a square grid as far apart, wherever such a disk fits in: they leave no hole but
     a seam along the outline that is narrower than two spacings.
     """
+    from scipy.spatial import cKDTree  # half a second that help does not need
+
     grid = grid_inside(outline, spacing)
     if len(grid) == 0:
         return np.zeros((0, 3))

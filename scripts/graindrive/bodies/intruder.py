@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..scenes import scene
 from ..base.errors import UsageError, one_line
 from ..parameters import StudyParameters

@@ -18,7 +18,9 @@ from pathlib import Path
 
 from ..commands.command_line import parse
 from ..base.errors import UsageError, one_line
+from ..commands.naming import readable
 from ..commands.parameter_values import argument, nearest
+from ..parameters import StudyParameters
 from ..base.plain_yaml import shortened
 from ..study import house, loaded
 from .plan_file import read_plan_file
@@ -28,7 +30,6 @@ OWN_KEYS = {  # of a study, which a campaign sets itself
     "resume": "a campaign always resumes",
     "redo": "remove a run folder to have it made again",
 }
-LONGEST_NAME = 120
 MOST_RUNS = 100_000
 
 
@@ -129,6 +130,8 @@ def planned_runs(path, content, study):
         for values in crossed(grid):
             run = planned_run(place, values, study)
             known = runs.setdefault(run.name, run)
+            if known.parameters.identity() != run.parameters.identity():
+                raise UsageError(f"{place}: two runs have the name {run.name} by chance; give one of them another seed")
             known.sweeps += [] if sweep in known.sweeps else [sweep]
     return list(runs.values())
 
@@ -182,16 +185,14 @@ def planned_run(place, values, study):
 def run_name(p, study):
     """Return the name of a run's folder: what differs from the study's own values, and the digest of all.
 
-    It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again.
+    It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again. Keys that only say
+    what is watched are in the digest, not in the words; those of the study come first, those of every study last.
     """
-    usual = study.usual(p.scale).identity()
-    told = [
-        f"{key}_{shortly(value)}"
-        for key, value in sorted(p.identity().items())
-        if key in study.parameters.__fields__ and value != usual.get(key)
-    ]
-    text = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in "-".join([study.name, *told]))
-    return f"{text[: LONGEST_NAME - 13]}-{p.digest()}"
+    usual, identity = study.usual(p.scale).identity(), p.identity()
+    keys = [key for key in study.parameters.__fields__ if key in identity and key not in p.watching()]
+    keys.sort(key=lambda key: key in StudyParameters.__fields__)
+    told = [(key, shortly(identity[key])) for key in keys if identity[key] != usual.get(key)]
+    return readable(study.name, told, p.digest())
 
 
 def shortly(value):

@@ -6,11 +6,13 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from .batch_table import evaluated, read_row
-from ..base.errors import UsageError, one_line
-from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
-from ..parameters import allowed, choices, digest, plain_type
 from ..accuracy import choice
+from ..accuracy.told import measured_trade
+from ..base.errors import UsageError, one_line
+from ..parameters import allowed, choices, digest, plain_type
+from .batch_table import evaluated, read_row
+from .naming import LONGEST, readable
+from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
 
 HELP_WORDS = ("help", "--help", "-h", "-help")
 
@@ -119,20 +121,22 @@ def build(cls, merged, given):
 
 
 def folder_name(study, scale, given, cls):
-    """Return the default run folder: the study, its scale and the keys given."""
+    """Return the default run folder: the study, its scale and the keys given, in the order of help."""
     kept = {
         k: v for k, v in given.items() if k == "accuracy" or cls.__fields__[k].field_info.extra.get("identity", True)
     }
-    name = "-".join([study, scale] + [f"{key}_{value}" for key, value in sorted(kept.items())])
-    name = "".join(c if c.isalnum() or c in "-_.+" else "_" for c in name)
-    return name if len(name) <= 120 else f"{name[:107]}-{digest(kept)}"
+    told = sorted(kept.items(), key=lambda item: list(cls.__fields__).index(item[0]))
+    whole = f"{study}-{scale}" + "".join(f"-{key}={value}" for key, value in told)
+    return readable(f"{study}-{scale}", told, digest(kept) if len(whole) > LONGEST else "")
 
 
 def help_text(study):
     """Return all that help says of a `Study`: its keys, then its levers, its observables and what it costs."""
     parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
     return "\n\n".join(
-        part for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study)] if part
+        part
+        for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study), measured_trade(study)]
+        if part
     )
 
 

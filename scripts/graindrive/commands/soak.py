@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..loops import grain_loop
 from ..runs import progress
 from ..scenes import scene

@@ -26,7 +26,7 @@ from ..runs import checkpoint, progress, recording
 from ..beds import drum
 from ..solids import surfaces
 from .continuum import FieldMeans, FlowMarch, centres
-from ..engines import TwoPhaseFlow, pressure_solvers
+from ..lazily import engines
 from ..base.errors import UsageError, one_line
 from ..postproc.drum import blocks
 from ..postproc.drum.flow import BED_FRACTION, SURFACE_LEVEL
@@ -57,7 +57,7 @@ NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_seco
 
 def check_words(p):
     """UsageError for a word that no run knows, also where no continuum is asked for."""
-    if p.pressure_solver and p.pressure_solver not in (known := pressure_solvers()):
+    if p.pressure_solver and p.pressure_solver not in (known := engines.pressure_solvers()):
         raise UsageError(
             f"pressure_solver={one_line(p.pressure_solver)} is not known; leave it empty or take one of {', '.join(known)}"
         )
@@ -126,7 +126,7 @@ def flow_of(p):
     below = np.clip((level - x[:, None]) / spacing + 0.5, 0, 1)  # the part of a cell that lies below the level
     fraction = np.repeat(below, count, axis=1)
     density, largest = BED_FRACTION, p.largest_viscosity * GRAIN_MASS
-    return TwoPhaseFlow(
+    return engines.TwoPhaseFlow(
         fraction,
         ~surfaces.cylinder((0, 0, 0), axis=(0, 0, 1), radius=p.drum_diameter / 2),
         **dict(

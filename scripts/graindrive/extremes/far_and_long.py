@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from .. import engines, study
+from .. import study
+from ..lazily import engines
 from .few_grains import Grain, R, advance, mass_of, place, said_by, spring, state_of
 from .impacts import STEPS, meeting, met, stiffness_for
 from .outcome import BOUND, GUARD, RIGHT, judged

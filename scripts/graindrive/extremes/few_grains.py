@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..loops import grain_loop
 from ..scenes import yade_march
 from ..scenes import scene

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..scenes import scene
 from .few_grains import CLOSE, Grain, Law, R, advance, duration, lattice, mass_of, place, said_by, spring, state_of
 from .outcome import BOUND, GUARD, RIGHT, judged, largest

@@ -1,10 +1,9 @@
 """What contacts remember, the tangential springs: from YADE's interactions to GrainLoop's springs and wallSprings, and back."""
 
-from .loop_laws import OUR_LAWS, only
+from .loop_laws import only
 
-# Law2_ -> the attribute of the contact's phys in which it remembers: a tangential spring [m], or YADE's own laws a force [N]
+# Law2_ -> the attribute of the contact's phys in which it remembers a force [N]; laws of our own remember a spring [m], `slip`
 REMEMBERED = {
-    **{name: "slip" for name in OUR_LAWS},
     "Law2_ScGeom_FrictPhys_CundallStrack": "shearForce",
     "Law2_ScGeom_MindlinPhys_Mindlin": "shearElastic",
 }
@@ -18,7 +17,7 @@ def springs_of(contacts, dimensions):
     """
     from yade import O
 
-    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
+    attribute = REMEMBERED.get(type(only(contacts.lawDispatcher.functors, "Law2_")).__name__, "slip")
     springs, at_solids = [], []
     for contact in O.interactions:
         if contact.isReal:
@@ -43,7 +42,7 @@ def give_springs(contacts, loop):
     """Have the present contacts of an InteractionLoop remember what GrainLoop's springs and wallSprings say, or nothing."""
     from yade import O
 
-    attribute = REMEMBERED[type(only(contacts.lawDispatcher.functors, "Law2_")).__name__]
+    attribute = REMEMBERED.get(type(only(contacts.lawDispatcher.functors, "Law2_")).__name__, "slip")
     dimensions = loop.dimensions
     remembered = by_ids(loop.springs, dimensions)
     for (solid, grain), spring in by_ids(loop.wallSprings, dimensions).items():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..base.errors import UsageError
 
 OUT_OF_PLANE = frozenset("zXY")  # degrees of freedom that lead out of a plane z = const

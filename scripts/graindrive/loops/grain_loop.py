@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from . import contact_springs
 from . import dimensions as dims
-from .. import engines
+from ..lazily import engines
 from . import loop_laws, stand_ins, take_over, take_over_spheres
 from ..base.errors import UsageError
 
@@ -136,7 +136,7 @@ def hand_settings_back(loop, before):
     UsageError where they belong to materials and YADE's own laws: those are the user's to change.
     """
     law2, ip2 = before.contacts.lawDispatcher.functors[0], before.contacts.physDispatcher.functors[0]
-    if type(law2).__name__ not in loop_laws.OUR_LAWS:
+    if type(law2).__name__ not in loop_laws.our_laws():
         for key, value in loop_laws.law_settings(before.contacts).items():
             if getattr(loop, key) != value:
                 raise UsageError(
@@ -150,7 +150,7 @@ def hand_settings_back(loop, before):
     )
     if getattr(ip2, "friction", -1) >= 0:
         ip2.friction = loop.friction
-    for key in loop_laws.OUR_ATTRIBUTES:
+    for key in loop_laws.our_attributes():
         if hasattr(law2, key):
             setattr(law2, key, getattr(loop, key))
 

@@ -1,12 +1,11 @@
 """What GrainLoop is told of the contact law, the materials and the damping of a scene that was written for YADE's loop."""
 
+import functools
 import math
 
-from .. import engines
 from ..base.errors import UsageError
+from ..lazily import engines
 
-OUR_LAWS = engines.law_functors()  # Law2_ -> GrainLoop.law
-OUR_ATTRIBUTES = tuple(dict.fromkeys(key for law in OUR_LAWS.values() for key in engines.contact_laws()[law]))
 OUR_IP2 = "Ip2_FrictMat_FrictMat_ContactPhys"
 # Law2_ -> its Ip2_, GrainLoop.law, and what must stay as it is by default because GrainLoop does not have it
 YADE_LAWS = {
@@ -25,6 +24,19 @@ YADE_LAWS = {
 }
 
 
+@functools.lru_cache(maxsize=None)
+def our_laws():
+    """Return {Law2_ of our own: GrainLoop.law}."""
+    return engines.law_functors()
+
+
+@functools.lru_cache(maxsize=None)
+def our_attributes():
+    """Return the names of all constants that laws of our own have, as a tuple."""
+    known = engines.contact_laws()
+    return tuple(dict.fromkeys(key for law in our_laws().values() for key in known[law]))
+
+
 def law_settings(contacts):
     """Return GrainLoop's arguments for the law, the friction and the materials of an InteractionLoop.
 
@@ -33,10 +45,10 @@ def law_settings(contacts):
     law = only(contacts.lawDispatcher.functors, "Law2_")
     ip2 = only(contacts.physDispatcher.functors, "Ip2_")
     name = type(law).__name__
-    if name in OUR_LAWS:
+    if name in our_laws():
         return our_law(law, ip2)
     if name not in YADE_LAWS:
-        raise UsageError(f"GrainLoop knows the laws {', '.join([*OUR_LAWS, *YADE_LAWS])}; the scene uses {name}")
+        raise UsageError(f"GrainLoop knows the laws {', '.join([*our_laws(), *YADE_LAWS])}; the scene uses {name}")
     return yade_law(law, ip2, contacts.geomDispatcher.functors)
 
 
@@ -71,8 +83,8 @@ def our_law(law, ip2):
     if law.leverArm != "radius":
         raise UsageError(f"GrainLoop's friction acts at the grains' radius; the functor has leverArm='{law.leverArm}'")
     friction = ip2.friction if ip2.friction >= 0 else math.tan(common_material("frictionAngle").frictionAngle)
-    constants = {key: getattr(law, key) for key in OUR_ATTRIBUTES if hasattr(law, key)}
-    return dict(law=OUR_LAWS[type(law).__name__], friction=friction, **constants)
+    constants = {key: getattr(law, key) for key in our_attributes() if hasattr(law, key)}
+    return dict(law=our_laws()[type(law).__name__], friction=friction, **constants)
 
 
 def yade_law(law, ip2, geometries):

@@ -1,6 +1,6 @@
 """What YADE's loop can do with spheres and GrainLoop cannot: rules beside those of `take_over`, for scenes in space."""
 
-from .loop_laws import OUR_LAWS, YADE_LAWS
+from .loop_laws import YADE_LAWS, our_laws
 from .take_over import Rule
 
 
@@ -9,7 +9,7 @@ def yades_own_law(loop):
     name = type(loop.contacts.lawDispatcher.functors[0]).__name__
     if name not in YADE_LAWS:
         return ""
-    return f"it has {name} for disks in a plane only; take one of {', '.join(OUR_LAWS)}, or dimensions=2 for disks"
+    return f"it has {name} for disks in a plane only; take one of {', '.join(our_laws())}, or dimensions=2 for disks"
 
 
 def damped(loop):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import engines
+from ..lazily import engines
 from ..loops import grain_loop
 from ..scenes import scene
 from ..postproc.reader import INTRUDER

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from .. import engines
+from ..lazily import engines
 
 MOST_CONTACTS = 6  # of a disk among disks of about its size
 

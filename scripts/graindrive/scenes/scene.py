@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..loops import dimensions as dimension_rule
-from .. import engines
+from ..lazily import engines
 from ..loops import grain_loop
 from ..base.errors import UsageError
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..loops import contact_springs, grain_loop
-from .. import engines
+from ..lazily import engines
 from . import scene
 from ..solids import surfaces
 from ..base.errors import UsageError

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from .._engines import Surface
+from .recipes import number, vector, words
 
 
 def install():
@@ -54,31 +55,3 @@ def _joined(kind, a, b):
 def _parts_of(kind, recipe):
     first, *rest = recipe.split(" ", 2)
     return (int(rest[0]), rest[1]) if first == kind else (1, recipe)
-
-
-def vector(name, value):
-    """Return three numbers as an array; ValueError that names them if they are none."""
-    try:
-        numbers = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        numbers = None
-    if numbers is None or numbers.shape != (3,):
-        raise ValueError(f"{name} must be three numbers, got {value!r}; give (x, y, z)")
-    return numbers
-
-
-def number(name, value):
-    """Return a number as a float; ValueError that names it if it is none."""
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be a number, got {value!r}; give one in metres or radians") from None
-
-
-def words(kind, *parts):
-    """A recipe: repr gives as many digits as bring the same bits back."""
-    found = [kind]
-    for part in parts:
-        values = np.atleast_1d(np.asarray(part)).ravel().tolist()
-        found += [repr(value) for value in values]
-    return " ".join(found)

@@ -15,26 +15,40 @@ import math
 
 import numpy as np
 
-from ..engines import Outline, Solid, Surface, sampled_recipe, surface_kinds
-from .surface_algebra import number, vector, words
+from ..lazily import engines
+from .recipes import number, vector, words
 
-__all__ = ["Surface", "ball", "body", "cylinder", "half_space", "sampled", "surface_kinds", "swept_outline"]
+__all__ = [
+    "ball",
+    "body",
+    "cylinder",
+    "half_space",
+    "sampled",
+    "swept_outline",
+]  # Surface and surface_kinds are of the engines
+
+
+def __getattr__(name):
+    """Give `Surface` and `surface_kinds`, which the compiled module makes."""
+    if name in ("Surface", "surface_kinds"):
+        return getattr(engines, name)
+    raise AttributeError(f"module {__name__} has no {name}")
 
 
 def half_space(point, normal):
     """Everything behind the plane through `point` [m] whose normal, of any length, leads out of the solid."""
-    return Surface(words("half_space", vector("point", point), vector("normal", normal)))
+    return engines.Surface(words("half_space", vector("point", point), vector("normal", normal)))
 
 
 def ball(centre, radius):
     """A ball about `centre` [m] of a radius [m] > 0."""
-    return Surface(words("ball", vector("centre", centre), number("radius", radius)))
+    return engines.Surface(words("ball", vector("centre", centre), number("radius", radius)))
 
 
 def cylinder(centre, axis, radius, length=math.inf):
     """A round cylinder about `centre` [m] along `axis`, of a radius and a length [m] > 0; without ends by default."""
     numbers = number("radius", radius), number("length", length)
-    return Surface(words("cylinder", vector("centre", centre), vector("axis", axis), *numbers))
+    return engines.Surface(words("cylinder", vector("centre", centre), vector("axis", axis), *numbers))
 
 
 def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
@@ -44,7 +58,7 @@ def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
     another axis than z the outline is turned with z by the shortest way (for -z about x); `placed` turns it further.
     Raises ValueError for an outline as Outline does, for one end without the other, and unless low < high.
     """
-    outline = outline if isinstance(outline, Outline) else Outline(outline)
+    outline = outline if isinstance(outline, engines.Outline) else engines.Outline(outline)
     low, high = number("low", low), number("high", high)
     if math.isinf(low) != math.isinf(high):
         raise ValueError(f"low and high must both be finite or both be left out, got {low} and {high}; give both ends")
@@ -56,7 +70,7 @@ def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
     else:
         axes = (0, 0, middle), (1, 0, 0), (0, 1, 0)
         vertices = outline.vertices
-        prism = Surface(words("swept_outline", *axes, high - low, len(vertices), *vertices))
+        prism = engines.Surface(words("swept_outline", *axes, high - low, len(vertices), *vertices))
     axis = vector("axis", axis)
     return prism if np.array_equal(axis, (0, 0, 1)) else _turned_from_z(prism, axis)
 
@@ -91,7 +105,7 @@ def sampled(function, low, high, spacing):
             f"the function must give one distance for each of {count.prod()} points, shape ({count.prod()},), "
             f"got shape {values.shape}; sum over the last axis of its argument, of shape (n, 3)"
         )
-    return Surface(sampled_recipe(tuple(map(int, count)), tuple(low), tuple(step), values))
+    return engines.Surface(engines.sampled_recipe(tuple(map(int, count)), tuple(low), tuple(step), values))
 
 
 def body(
@@ -113,7 +127,7 @@ def body(
             f"a free solid needs mass and inertia > 0 and finite, got {mass} and {inertia}; give them or held=True"
         )
     made = Body()
-    made.shape = Solid(surface)
+    made.shape = engines.Solid(surface)
     made.shape.color = color
     made.mat = material if not isinstance(material, (int, str)) else O.materials[material]
     made.state.pos = made.state.refPos = tuple(vector("position", position))

@@ -29,7 +29,7 @@ USUAL = dict(budget="30min", target="5%", vary="", seeds=str(MOST_SEEDS), cores=
 UNITS = dict(s=1, min=60, h=3600)
 USAGE = """usage: scripts/tune STUDY [key=value …] [budget=30min] [target=5%] [vary=KEY,…] [seeds=6]
                          [cores=N] [out=DIR] [-n] [--launch]
-       scripts/tune check [BOOK …] [points=5] [cores=N] [out=DIR]
+       scripts/tune check [BOOK …] [points=5] [observable=NAME] [cores=N] [out=DIR]
 
 Starts from the study's most accurate levers, or those that are given, and varies each alone towards cheaper values, then
 the good ones together. Keys that are no levers may have several values, as phi=0.352,0.6: each is a scene.
@@ -93,23 +93,29 @@ def tune(arguments):
 
 def check(words):
     """Put books on trial; return the exit code."""
-    options = dict(points="5", cores=USUAL["cores"], out="held_out")
+    options = dict(points="5", observable="", cores=USUAL["cores"], out="held_out")
     options.update(word.split("=", 1) for word in words if word.split("=", 1)[0] in options and "=" in word)
     names = [word for word in words if "=" not in word]
     for word in words:
         if "=" in word and word.split("=", 1)[0] not in options:
             raise UsageError(
-                f"{one_line(word)} is nothing that check knows; it takes names of books, points=, cores= and out="
+                f"{one_line(word)} is nothing that check knows; it takes names of books, points=, observable=, cores= and out="
             )
     count, cores, out, points = whole(options, "points"), whole(options, "cores"), Path(options["out"]).absolute(), []
+    observable, books, passed_over = options["observable"], held_out.books_of(names), []
     with execution.nothing_in_the_way(out), signals.handled():
         out.mkdir(parents=True, exist_ok=True)
-        for number, made in enumerate(held_out.books_of(names)):
-            file = study_file(made.study)
-            folder = out / made.file.removesuffix(".json")
-            points += held_out.points_of(loaded(file), file, made, folder, count, cores, number + 1)
+        for number, made in enumerate(books):
+            file, name = study_file(made.study), made.file.removesuffix(".json")
+            study = loaded(file)
+            if not names and not held_out.can_be_tried(study, made, observable):
+                passed_over.append(name)
+                continue
+            points += held_out.points_of(study, file, made, out / name, count, cores, number + 1, observable)
         command = shlex.join(["scripts/tune", "check", *(w for w in words if not w.startswith(("out=", "cores=")))])
         where = f"`{command}`; code {code_version()}, on {cpu_model()}."
+        if passed_over:
+            where += f" Without a setting whose error is known to be below 100 %: {', '.join(passed_over)}."
         report = held_out_report.write_report(out, points, where)
     print(
         f"{NAME}: {sum(p.holds for p in points)} of {len(points)} within what was asked for; see {report}",

@@ -82,9 +82,17 @@ def accuracies(book, observable):
     return found
 
 
-def points_of(study, study_file, book, folder, count, cores, seed):
-    """Return `count` `Point`s of a book, with their runs in `folder`; runs that are there are not made again."""
-    observable = study.headline.name
+def can_be_tried(study, book, observable):
+    """True if a book has a setting, besides the reference, whose error of `observable`, "" for the headline, is below 100 %."""
+    return bool(accuracies(book, observable or study.headline.name))
+
+
+def points_of(study, study_file, book, folder, count, cores, seed, observable=""):
+    """Return `count` `Point`s of a book, with their runs in `folder`; runs that are there are not made again.
+
+    `observable` is the one whose error is asked for, "" for the headline.
+    """
+    observable = observable or study.headline.name
     errors = accuracies(book, observable)
     if not errors:
         raise UsageError(
@@ -92,7 +100,7 @@ def points_of(study, study_file, book, folder, count, cores, seed):
         )
     trials = Trials(study, study_file, folder, drawn_scenes(book, count, seed), dict(book.reference), folder)
     asked = [errors[k % len(errors)] for k in range(count)]
-    taken = [choice_for(study, trials.scenes[k], asked[k], FIRST_SEED + k) for k in range(count)]
+    taken = [choice_for(study, trials.scenes[k], f"{observable}:{asked[k]:.6g}", FIRST_SEED + k) for k in range(count)]
     settings = [tuple(sorted(t.choice.setting.levers.items())) for t in taken]
     wanted = [Trial(s, k, FIRST_SEED + k) for k in range(count) for s in dict.fromkeys([(), settings[k]])]
     trials.make(wanted, cores)
@@ -127,10 +135,10 @@ def points_of(study, study_file, book, folder, count, cores, seed):
     return found
 
 
-def choice_for(study, scene, error, seed):
-    """Return the parameters that the study takes for an accuracy in a scene; UsageError where it does not find the book."""
+def choice_for(study, scene, accuracy, seed):
+    """Return what the study takes for an `accuracy`, as NAME:0.05, in a scene; UsageError where it does not find the book."""
     words = [argument(study.parameters, key, value) for key, value in {**scene, "seed": seed}.items()]
-    p = parse(study, [*words, f"accuracy={error:.6g}"], environment={})
+    p = parse(study, [*words, f"accuracy={accuracy}"], environment={})
     if p.choice.setting is None:
         raise UsageError(f"{' '.join(words)}: {p.choice.words}")
     return p

@@ -1,0 +1,30 @@
+"""What is imported when it is first used: help, plans of campaigns and checks of parameters need neither YADE nor matplotlib.
+
+`engines` stands for `graindrive.engines`; a study names its figure, film and report in the same way.
+"""
+
+import importlib
+
+
+class Lazily:
+    """Stands for a module, or for something in it, until it is used.
+
+    `name` is the module's full name, `attribute` a name in it. Whoever only asks whether there is one imports nothing.
+    """
+
+    def __init__(self, name, attribute=""):
+        self._place = name, attribute
+
+    def __getattr__(self, name):
+        return getattr(self._meant(), name)
+
+    def __call__(self, *arguments, **keywords):
+        return self._meant()(*arguments, **keywords)
+
+    def _meant(self):
+        module, attribute = self._place
+        found = importlib.import_module(module)
+        return getattr(found, attribute) if attribute else found
+
+
+engines = Lazily("graindrive.engines")
