@@ -12,12 +12,12 @@ T = 1 by the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 d
 presses for the bed that the demo leaves out (0.84 rho g d for each d of it); lid_pressure=auto, the default, follows the depth.
 The smoke run has no lid, to be quick.
 
-What cheaper settings change stands at the end of help, measured by `scripts/tune wiggle`; what cheaper scenes change, for the disk
-at A = 3 and 5, in studies/RESULTS.md (`wiggle_scene`). In short: depth is pressure, so a shallow scene needs the lid (without it
-the disk sinks at T = 2 where it should rise); under a rigid lid no scene at A = 3 differs from the full one by two errors; at A = 5
-the demo's scene is too small (at T = 2 the disk sinks in the full one and rises under the lid). Seeds scatter by 1.5 times what
-one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the surface, 105 d; in
-100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
+What cheaper settings change stands at the end of help, measured by `scripts/tune wiggle`; what cheaper scenes change, for the
+disk at A = 3 and 5, in studies/RESULTS.md (`wiggle_scene`). In short: depth is pressure, so a shallow scene needs the lid
+(without it the disk sinks at T = 2 where it should rise); under a rigid lid no scene at A = 3 differs from the full one by two
+errors; at A = 5 the demo's scene is too small (at T = 2 the disk sinks in the full one and rises under the lid). Seeds scatter
+by 1.5 times what one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the surface,
+105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
