@@ -47,9 +47,7 @@ def report_of(folder):
         text = (folder / "report.md").read_text(encoding="utf-8").strip()
         return Campaign.of(folder).plan["name"] if (folder / "campaign.json").exists() else folder.resolve().name, text
     except FileNotFoundError:
-        raise RunError(
-            f"{folder} holds no report.md: call scripts/campaign first, with a `report:` in its file"
-        ) from None
+        raise RunError(f"{folder} holds no report.md: call scripts/campaign first") from None
 
 
 def stored_sections(target):

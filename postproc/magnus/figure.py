@@ -8,6 +8,7 @@ from matplotlib.patches import Circle, Polygon
 
 from .. import fields
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, save
+from ..measured import in_words
 from ..reader import Run, RunError
 from .forces import drag_and_lift
 
@@ -61,7 +62,7 @@ def coarse(travel, force):
 def draw_mean(axes, summary, name, colour):
     """Line of a mean over the steady state, named with its standard error."""
     start = summary["steady_from"]
-    label = f"{name} {summary[name]:.3g} ± {summary[name + '_err']:.1g} N"
+    label = f"{name} {in_words(summary[name], summary[name + '_err'])} N"
     axes.plot([start, start + summary["steady_travel"]], 2 * [summary[name]], color=colour, linewidth=1.5, label=label)
 
 

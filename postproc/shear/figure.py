@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save
+from ..measured import in_words
 from ..reader import Run
 
 
@@ -35,7 +36,7 @@ def title(run):
     """Return in words what flowed how."""
     found = run.summary
     return (
-        rf"$I$ = {found['flow_inertial_number']:.3g}, $\mu$ = {found['stress_ratio']:.3f} ± {found['stress_ratio_err']:.3f},"
+        rf"$I$ = {found['flow_inertial_number']:.3g}, $\mu$ = {in_words(found['stress_ratio'], found['stress_ratio_err'])},"
         rf" $\phi$ = {found['phi']:.4f}, {run.parameters['grains']} disks"
     )
 

@@ -9,6 +9,7 @@ from matplotlib.patches import Polygon
 
 from ..drift import drift, phase_rates
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, PURPLE, STYLE, VERMILLION, draw_chains, draw_grains, save
+from ..measured import in_words
 from ..reader import BASE, GRAIN, INTRUDER, Run
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
@@ -88,17 +89,9 @@ def title(run):
 def draw_rate(axes, found):
     """Line between the middles of the average's first and last cycle, whose slope is the rise rate, named with its error."""
     inside = (found.cycle_t >= found.start) & (found.cycle_t <= found.end)
-    label = rf"$V_y$ = {with_error(found.rate, found.error)} $\sqrt{{gd}}$"
+    label = rf"$V_y$ = {in_words(found.rate, found.error).replace('-', '−')} $\sqrt{{gd}}$"
     middles, means = (column[inside][[0, -1]] for column in (found.cycle_t, found.cycle_y))
     axes.plot(middles, means, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
-
-
-def with_error(value, error):
-    """Return "0.0123 ± 0.0005" with as many digits as the error allows, two of its own."""
-    if not np.isfinite(error) or error <= 0:
-        return f"{value:.3g}".replace("-", "−")
-    decimals = int(np.clip(1 - np.floor(np.log10(error)), 0, 8))
-    return f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", "−")
 
 
 def draw_period(axes, period):

@@ -155,7 +155,7 @@ def loaded(path):
         sys.path.remove(str(path.parent))
     study = getattr(module, NAME, None)
     if not isinstance(study, Study):
-        raise UsageError(f"{path} makes no {NAME}, so it is not a study; see 'A study of your own' in README.md")
+        raise UsageError(f"{path} makes no {NAME}, so it is not a study; see studies/guides/study.md")
     return study
 
 

@@ -1,4 +1,4 @@
-"""The README's study, without YADE and without grains: progress, checkpoints, kill and resume, campaign, report, commands."""
+"""The guide's study, without YADE and without grains: progress, checkpoints, kill and resume, campaign, report, commands."""
 
 import json
 import math
@@ -13,13 +13,13 @@ import h5py
 import numpy as np
 import pandas as pd
 import pytest
+from guide_pages import TOP, write_files
 
 from graindrive.commands.killtest import TIMED
 from graindrive.postproc import __main__ as postproc
 from graindrive.postproc.reader import Run
 from graindrive.study import loaded
 
-TOP = Path(__file__).resolve().parents[2]
 BUILT = next(folder for folder in sys.path if (Path(folder) / "graindrive").is_dir())
 KEYS = ["time=20", "damping=0.2", "checkpoint_seconds=0"]  # a checkpoint after every block of 100 steps
 # The study's file as a module whose march kills its process, or asks it to stop, before a step.
@@ -64,9 +64,8 @@ STUDY = dataclasses.replace(oscillator.STUDY, report=Report("oscillator", "A mas
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with the study of README.md in a file of its own."""
-    section = (TOP / "README.md").read_text(encoding="utf-8").split("## A study of your own\n")[1].split("\n## ")[0]
-    (tmp_path / "oscillator.py").write_text(section.split("```python\n")[1].split("```")[0])
+    """A folder with the study of studies/guides/study.md."""
+    write_files("study.md", tmp_path)
     return tmp_path
 
 

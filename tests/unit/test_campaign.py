@@ -13,7 +13,7 @@ from graindrive.campaign import cost, execution
 from graindrive.campaign.__main__ import main, read_arguments
 from graindrive.campaign.plan import read_plan
 from graindrive.base.errors import UsageError
-from graindrive.postproc.campaign import report, results
+from graindrive.postproc.campaign import results, what_was_run
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.reader import RunError
@@ -368,4 +368,4 @@ def test_a_table_of_words_and_numbers_is_sorted_and_told(tmp_path):
     plan = dict(name="mixed", file="x.yaml", study="magnus", report="", runs=[dict(name=n, sweeps=["a"]) for n in runs])
     (tmp_path / "campaign.json").write_text(json.dumps(plan))
     table = Campaign.of(tmp_path).table
-    assert list(table["travel"]) == [60.0, "auto"] and report.values(table["travel"]) == "60, auto"
+    assert list(table["travel"]) == [60.0, "auto"] and what_was_run.values(table["travel"]) == "60, auto"

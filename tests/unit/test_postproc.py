@@ -126,13 +126,6 @@ def test_the_figure_shows_grains_chains_and_intruder(run_folder, monkeypatch):
         assert np.sum(np.abs(pixels - colour).sum(axis=1) < 6) > 100
 
 
-@pytest.mark.parametrize(
-    "value, error, words", [(0.01234, 0.0005, "0.01234 ± 0.00050"), (-3.2, 0.4, "−3.20 ± 0.40"), (1.5, 0, "1.5")]
-)
-def test_numbers_carry_the_digits_that_their_error_allows(value, error, words):
-    assert figure.with_error(value, error) == words
-
-
 def test_command_redraws(run_folder, capsys):
     assert command.main([str(run_folder), "frame=0"]) == 0 and (run_folder / "figure.png").exists()
     assert command.main([]) == 2 and command.main(["help"]) == 0 and "frame=N" in capsys.readouterr().out

@@ -52,7 +52,7 @@ def campaign(options):
         with signals.handled(), execution.opened(folder, plan) as lock:
             if not options.report:
                 make_runs(folder, plan, options, lock)
-            report = write_report(folder, plan.report)
+            report = write_report(folder, plan.report, plan.study.observables)
         print(f"{NAME}: see {report}", file=sys.stderr)
         return tell_failures(folder, plan)
 

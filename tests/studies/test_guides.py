@@ -1,0 +1,162 @@
+"""The pages of studies/guides, followed word by word in an empty folder."""
+
+import glob
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from guide_pages import GUIDES, TOP, apply_changes, blocks, follow, write_files
+
+from graindrive.postproc.reader import Run
+
+needs_snakemake = pytest.mark.skipif(shutil.which("snakemake") is None, reason="needs snakemake")
+needs_compiler = pytest.mark.skipif(
+    shutil.which("g++") is None or shutil.which("patch") is None, reason="needs g++, patch"
+)
+FLAGS = "-std=c++17 -O0 -Wall -Wextra -Werror -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16".split()
+WITH_YADE = "-fPIC -Wno-psabi -DBOOST_ALLOW_DEPRECATED_HEADERS -DBOOST_BIND_GLOBAL_PLACEHOLDERS".split()
+OBJECTS = (
+    TOP / "build" / "engines" / "CMakeFiles" / "_engines.dir" / "seam"
+)  # where CMake has compiled what engines need
+
+
+def test_the_index_names_every_page_and_every_page_says_what_to_look_at():
+    index = (GUIDES / "README.md").read_text()
+    pages = {path.name for path in GUIDES.glob("*.md")} - {"README.md"}
+    assert {name for name in pages if f"({name})" in index} == pages and len(pages) == index.count(".md) |")
+    assert all("\n## What to look at\n" in (GUIDES / name).read_text() for name in pages)
+
+
+def test_a_shape_of_ones_own_in_a_plane_and_in_space(tmp_path):
+    follow("shape.md", tmp_path)
+    wiggle, lift = Run(tmp_path / "arrow-run"), Run(tmp_path / "rod-run")
+    # The outline is the beads' envelope, 8 d high as drawn; all shapes of the study are scaled to the weight of its disk.
+    assert wiggle.state == lift.state == "complete" and wiggle.parameters["shape"] == "arrow.csv"
+    assert lift.summary["body_height"] == pytest.approx(3, abs=0.05)  # sampled on a grid
+    assert (tmp_path / "arrow-run/figure.png").exists() and (tmp_path / "rod-run/figure.png").exists()
+
+
+@needs_snakemake
+def test_a_study_of_ones_own_and_its_campaign(tmp_path):
+    said = follow("study.md", tmp_path)
+    assert "usage: yade oscillator.py" in said and "oscillator/report.md" in said
+    assert json.loads((tmp_path / "first/summary.json").read_text())["energy_left_unit"] == "-"
+    assert list(pd.read_csv(tmp_path / "oscillator/table.csv")["damping"]) == [0.05, 0.1, 0.2]
+    assert (tmp_path / "oscillator/figures/oscillator-damping-energy_left.png").exists()
+
+
+@needs_snakemake
+def test_a_new_observable_stands_in_a_report_without_and_with_a_claim(tmp_path):
+    said = follow("observable.md", tmp_path)
+    plain, claims = (tmp_path / "plain.md").read_text(), (tmp_path / "walk/report.md").read_text()
+    assert "| hops | runs | distance [d] | spread [d^2] |" in plain and "(figures/plain-length-spread.png)" in plain
+    assert "Of 1 claims: 1 reproduced" in claims and "6 of 6 runs are there already" in said
+    assert (tmp_path / "walk/figures/plain-length-spread.png").exists()
+    assert (tmp_path / "walk/figures/claims-growth.png").exists()
+
+
+# What Slurm does, as far as the page's profile asks for it: jobs run at once, and are done when sbatch returns.
+SLURM = {
+    "sbatch": 'echo "$@" >>"$HOME/submitted"; bash "${@: -1}" >/dev/null 2>&1; echo $$',
+    "sacct": "echo '  COMPLETED '",
+    "scancel": "exit 1",
+}
+
+
+@needs_snakemake
+def test_a_campaign_goes_through_a_slurm_profile(tmp_path):
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name, text in SLURM.items():
+        (programs / name).write_text(f"#!/bin/bash\n{text}\n")
+        (programs / name).chmod(0o755)
+    follow("cluster.md", tmp_path, programs)
+    submitted = (tmp_path / "submitted").read_text().splitlines()
+    assert len(submitted) == 4 and all(
+        "--parsable --partition=short --cpus-per-task=1 --mem=2000" in s for s in submitted
+    )
+    assert len(pd.read_csv(tmp_path / "toss/table.csv")) == 4 and "heads" in (tmp_path / "toss/report.md").read_text()
+
+
+# ---- C++ -------------------------------------------------------------------------------------------------------------
+
+
+def compiled(place, *arguments):
+    """Compile with the headers of `place` before those of the checkout; what the compiler says is the failure's text."""
+    headers = ["-I", str(place), "-I", str(TOP), "-isystem", "/usr/include/eigen3"]
+    done = subprocess.run(["g++", *FLAGS, *headers, *map(str, arguments)], cwd=place, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@needs_compiler
+def test_a_new_law_is_known_to_registry_spheres_and_functors(tmp_path):
+    apply_changes("law.md", tmp_path)
+    laws = tmp_path / "engines" / "laws"
+    sources = [laws / "kelvin_voigt_test.cpp", TOP / "engines/laws/registry.cpp"]
+    compiled(tmp_path, *sources, "-lgtest", "-lgtest_main", "-o", "law_test")
+    done = subprocess.run([tmp_path / "law_test"], capture_output=True, text=True)
+    assert done.returncode == 0 and "[  PASSED  ] 2 tests." in done.stdout, done.stdout
+    python = f"/usr/include/python3.{sys.version_info.minor}"
+    functors = tmp_path / "engines/functors/contact_law_functors.cpp"
+    compiled(tmp_path, *WITH_YADE, "-isystem", python, "-fsyntax-only", functors)
+
+
+# The binding as in drives_py.cpp, alone in a module, with the source beside it: the headers are read once.
+MODULE = """
+#include "engines/drives/Tether.cpp"
+#include "engines/seam/bind.hpp"
+BOOST_PYTHON_MODULE(tether) { graindrive::seam::bind<graindrive::Tether>(graindrive::Tether::documentation); }
+"""
+INTO_THE_PACKAGE = """
+import graindrive.engines
+import tether
+graindrive.engines.Tether = tether.Tether
+"""
+
+
+@needs_compiler
+def test_a_new_engine_compiles_and_acts_on_both_loops(tmp_path):
+    apply_changes("engine.md", tmp_path)
+    binding = (tmp_path / "engines/drives/drives_py.cpp").read_text()
+    assert '#include "engines/drives/Tether.hpp"' in binding and "seam::bind<Tether>(Tether::documentation);" in binding
+    (tmp_path / "module.cpp").write_text(MODULE)
+    python = f"python3.{sys.version_info.minor}"
+    source = [*WITH_YADE, "-isystem", f"/usr/include/{python}", "module.cpp"]
+    others = [OBJECTS / "bind.cpp.o", OBJECTS / "scene_contacts.cpp.o"]
+    if not all(path.exists() for path in others):
+        compiled(tmp_path, "-fsyntax-only", *source)
+        pytest.skip("compiled, but not run: the checkout's own engines are not built here")
+    (folder,) = glob.glob("/usr/lib/*/yade-double")
+    boost = [
+        f"-lboost_{name}"
+        for name in (f"python3{sys.version_info.minor}", f"numpy3{sys.version_info.minor}", "serialization")
+    ]
+    yade = ["-L", folder, f"-Wl,-rpath,{folder}", "-lyade", "-lpkg_common", "-lpkg_dem"]
+    compiled(tmp_path, "-shared", *source, *others, *yade, *boost, f"-l{python}", "-o", "tether.so")
+    (tmp_path / "conftest.py").write_text(INTO_THE_PACKAGE)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "engines/drives/Tether_test.py"]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0 and "3 passed" in done.stdout, done.stdout + done.stderr
+
+
+def test_a_change_whose_place_is_gone_is_found(tmp_path, monkeypatch):
+    monkeypatch.setattr("guide_pages.GUIDES", tmp_path)
+    (tmp_path / "page.md").write_text(
+        "```diff\n--- a/LICENSE\n+++ b/LICENSE\n@@ -1 +1 @@\n-no such line\n+another\n```\n"
+    )
+    with pytest.raises(AssertionError, match="FAILED"):
+        apply_changes("page.md", tmp_path / "place")
+
+
+def test_blocks_are_files_commands_and_changes(tmp_path, monkeypatch):
+    monkeypatch.setattr("guide_pages.GUIDES", tmp_path)
+    (tmp_path / "page.md").write_text("`a/b.txt`:\n\n```text\nx\n```\n\n```bash\necho y\n```\n")
+    assert blocks("page.md") == [("a/b.txt", "text", "x\n"), (None, "bash", "echo y\n")]
+    assert write_files("page.md", tmp_path) == ["a/b.txt"] and (Path(tmp_path) / "a/b.txt").read_text() == "x\n"
+    assert follow("page.md", tmp_path) == "y\n"
