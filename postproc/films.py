@@ -42,7 +42,7 @@ def film(path, prepared, frames_of=GrainFrames):
     if len(frames) < FEWEST_FRAMES:
         raise RunError(f"{path} holds {len(frames)} frames, a film needs more; run again with frames=200 or so")
     if not FFMpegWriter.isAvailable():
-        raise RunError("a film needs ffmpeg; install Debian's package ffmpeg")
+        raise RunError("a film needs ffmpeg; install Debian's package ffmpeg (scripts/setup film)")
     target = Path(path) / "animation.mp4"
     with plt.rc_context(STYLE), written(target) as temporary:
         shoot(frames, temporary, *prepared(run))

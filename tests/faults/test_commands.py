@@ -15,6 +15,16 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 NO_PACKAGES = {"GRAINDRIVE_NO_PACKAGES": "1"}
+# A run's target, and what only tests have: each makes a file, so that a test sees what was built.
+MINIATURE = """cmake_minimum_required(VERSION 3.25)
+project(miniature LANGUAGES NONE)
+add_custom_command(OUTPUT module COMMAND ${CMAKE_COMMAND} -E touch module)
+add_custom_target(_engines DEPENDS module)
+if(GRAINDRIVE_TESTS)
+  add_custom_command(OUTPUT cpp_tests COMMAND ${CMAKE_COMMAND} -E touch cpp_tests)
+  add_custom_target(cpp_programs ALL DEPENDS module cpp_tests)
+endif()
+"""
 
 
 @pytest.fixture
@@ -23,7 +33,7 @@ def checkout(tmp_path):
     top = tmp_path / "checkout"
     (top / "studies").mkdir(parents=True)
     shutil.copytree(ROOT / "scripts", top / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
-    (top / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(miniature LANGUAGES NONE)\n")
+    (top / "CMakeLists.txt").write_text(MINIATURE)
     (top / "studies" / "wiggle.py").write_text(
         '"""A triangle that wiggles."""\nimport sys\nsys.exit(int(sys.argv[1]))\n'
     )
@@ -138,12 +148,105 @@ def test_only_missing_packages_are_installed(checkout, stand_in, tmp_path):
     assert update.endswith("update") and install.endswith("install --no-install-recommends yade")
 
 
+def listed_packages():
+    """Return [(name, groups, reason)] of scripts/packages.txt."""
+    lines = (ROOT / "scripts" / "packages.txt").read_text(encoding="utf-8").splitlines()
+    entries = [line.partition("#") for line in lines if line and not line.startswith("#")]
+    return [(*(words.split() + ["", ""])[:2], reason.strip()) for words, _, reason in entries]
+
+
+def test_each_package_is_listed_once_with_groups_that_setup_knows_and_a_reason(checkout):
+    packages = listed_packages()
+    names = [name.rstrip("?") for name, _, _ in packages]
+    assert len(names) == len(set(names)) > 20
+    assert all(reason for _, _, reason in packages)
+    known = set(call(checkout, "setup", "nonsense").stderr.partition("there are: ")[2].split())
+    assert {group for _, groups, _ in packages for group in groups.split(",")} == known - {"nonsense"}
+
+
+@pytest.fixture
+def asked_for(checkout, stand_in, tmp_path):
+    """A function that calls a command where no package is installed and returns the names that it asks apt-get for."""
+    stand_in("dpkg-query", "exit 1")
+    stand_in("dpkg", "exit 0")
+    stand_in("sudo", '"$@"')
+    stand_in("apt-get", f'echo "$@" >>{tmp_path}/calls')
+
+    def names(*command):
+        call(checkout, *command, environment=stand_in.environment)
+        calls = (tmp_path / "calls").read_text().splitlines()
+        (tmp_path / "calls").unlink()
+        return [set(line.partition("--no-install-recommends ")[2].split()) for line in calls if " install " in line][-1]
+
+    return names
+
+
+def test_a_run_installs_nothing_that_only_other_commands_need(asked_for):
+    names = asked_for("run", "wiggle", "0")
+    assert names == {name for name, groups, _ in listed_packages() if "run" in groups.split(",")}
+    assert {"python3-yade", "g++", "python3-h5py"} <= names
+    others = "yade lammps liggghts black flake8 clang-format libgtest-dev ffmpeg snakemake python3-vtk9 python3-pytest"
+    assert not names & set(others.split())
+
+
+@pytest.mark.parametrize(
+    "command, added",
+    [
+        (["run", "wiggle", "0", "export=xyz,vtk"], {"python3-vtk9"}),
+        (["campaign", "some.yaml"], {"snakemake", "python3-pandas"}),
+        (["tune", "shear"], {"snakemake", "python3-pandas"}),
+        (["bench"], {"lammps", "liggghts"}),
+        (["env"], {"yade", "python3-pandas"}),
+        (["setup"], {"yade", "python3-pandas"}),
+        (["setup", "film"], {"ffmpeg"}),
+    ],
+)
+def test_a_command_adds_its_own_packages_to_those_of_a_run(asked_for, command, added):
+    assert asked_for(*command) - asked_for("run", "wiggle", "0") == added
+
+
+def test_tests_ask_for_every_package(asked_for):
+    assert asked_for("test", "--cpp") == {name.rstrip("?") for name, _, _ in listed_packages()}
+
+
+def test_style_is_checked_without_a_build(checkout, asked_for):
+    assert asked_for("lint") == {"flake8", "black", "clang-format"}
+    assert not (checkout / "build" / "CMakeCache.txt").exists()
+
+
+def test_unknown_group_is_refused(checkout):
+    done = call(checkout, "setup", "films")
+    assert done.returncode == 2 and "'films'" in done.stderr and "film vtk" in done.stderr
+    assert not (checkout / "build").exists()
+
+
+def test_a_run_builds_no_tests_and_leaves_those_that_were_asked_for(checkout):
+    cache, programs = checkout / "build" / "CMakeCache.txt", checkout / "build" / "cpp_tests"
+    assert call(checkout, "run", "wiggle", "0").returncode == 0
+    assert "GRAINDRIVE_TESTS:UNINITIALIZED=OFF" in cache.read_text()
+    assert (checkout / "build" / "module").exists() and not programs.exists()
+    assert "configuring" in call(checkout, "setup", "test").stderr and programs.exists()
+    programs.unlink()
+    assert call(checkout, "setup", "run").stderr == ""  # neither configured nor built anew
+    assert not programs.exists()
+    assert "configuring" not in call(checkout, "setup", "test").stderr and programs.exists()
+
+
+def test_a_configuration_that_fails_leaves_the_one_before_it(checkout):
+    call(checkout, "setup")
+    description = checkout / "CMakeLists.txt"
+    description.write_text(MINIATURE + 'if(GRAINDRIVE_TESTS)\n  message(FATAL_ERROR "no GoogleTest")\nendif()\n')
+    done = call(checkout, "setup", "test")
+    assert done.returncode == 1 and "no GoogleTest" in done.stderr
+    assert call(checkout, "setup", "run").returncode == 0
+
+
 def test_setup_goes_on_without_a_peer_that_cannot_be_had(checkout, stand_in):
     stand_in("dpkg-query", f"sed 's/[ ?#].*//; /^$/d; /^liggghts/d; s/^/installed /' {checkout}/scripts/packages.txt")
     stand_in("dpkg", "exit 0")
     stand_in("sudo", '"$@"')
     stand_in("apt-get", "exit 100")
-    done = call(checkout, "setup", environment=stand_in.environment)
+    done = call(checkout, "setup", "bench", environment=stand_in.environment)
     assert done.returncode == 0 and "going on without liggghts" in done.stderr
 
 

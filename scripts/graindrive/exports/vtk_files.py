@@ -19,7 +19,7 @@ def modules():
         from vtkmodules.util import numpy_support
     except ImportError as error:
         raise UsageError(
-            f"files for ParaView (vtk=1) need VTK for Python ({error}); install Debian's package python3-vtk9"
+            f"files for ParaView (vtk=1) need VTK for Python ({error}); install Debian's package python3-vtk9 (scripts/setup vtk)"
         ) from None
     return vtkCommonCore, vtkCommonDataModel, vtkIOXML, numpy_support
 
