@@ -40,7 +40,7 @@ import house  # noqa: E402, F401
 import numpy as np  # noqa: E402
 
 from graindrive.beds import drum, lid  # noqa: E402
-from graindrive.continuum.continuum import drum_continuum  # noqa: E402
+from graindrive.continuum import drum_continuum  # noqa: E402
 from graindrive import engines  # noqa: E402
 from graindrive.runs import fields, picture, progress  # noqa: E402
 from graindrive.commands import headless  # noqa: E402
