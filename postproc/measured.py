@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.numbers import with_error
+
 FEWEST_REPEATS = 3  # with fewer, their scatter says too little about their error
 
 
@@ -15,10 +17,7 @@ class Measured:
     error: float
 
     def __str__(self):
-        if not self.error > 1e-9 * abs(self.value) or np.isinf(self.error):
-            return f"{self.value:.4g}" + (" (error unknown)" if np.isnan(self.error) else "")
-        digits = max(0, 1 - int(np.floor(np.log10(self.error))))
-        return f"{self.value:.{digits}f} ± {self.error:.{digits}f}"
+        return with_error(self.value, self.error)
 
     def __abs__(self):
         """The number without its sign."""

@@ -10,7 +10,7 @@ packing is compressed without friction, since grains of mu = 0.5 jam at 0.81, an
 comes to rest. Lift is positive along -omega x V, drag along -V. Theta is counter-clockwise from V.
 
 Drag grows as V0^2 and L/D does not depend on V0 (phi = 0.352, Omega = 5, box 150 d x 100 d: D = 0.040 and 4.28 N, L/D = 0.33
-and 0.34, both +- 0.04, at 0.25 and 2.5 m/s), while the steps needed go as 1/V0. At 2.5 m/s a grain that the body hits
+and 0.34, both ± 0.04, at 0.25 and 2.5 m/s), while the steps needed go as 1/V0. At 2.5 m/s a grain that the body hits
 overlaps it by 1.5 % of a radius. dt_factor=2.5 is still a quarter of the critical step at the largest overlap allowed.
 
 Cost on one core: the paper's size is 26,500 to 61,700 disks and 1.2e7 steps at 0.25 m/s, a quarter of an hour (phi = 0.352)
@@ -44,7 +44,7 @@ from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
 from graindrive.parameters import Lever, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
-from graindrive.postproc.magnus import figure  # noqa: E402
+from graindrive.postproc.magnus import animation, figure  # noqa: E402
 from graindrive.postproc.magnus.campaign import REPORT  # noqa: E402
 from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -371,6 +371,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=figure.draw,
+    film=animation.film,
     report=REPORT,
     constants={
         "d": Constant(D, "m", "mean diameter of the grains"),

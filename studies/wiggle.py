@@ -16,17 +16,17 @@ What a cheaper scene changes, for the disk at A = 3, time = 100: V_y in sqrt(g d
 their scatter, and the seconds that a run took of one busy core (studies/campaigns/wiggle_scene.yaml; studies/RESULTS.md):
 
     scene                                    T = 1          T = 2          T = 4          cost
-    300 x 195 d, depth 105 d, dt x 5         -0.03 +- 0.03   0.06 +- 0.02   0.06 +- 0.01   420 to 550 s
-    120 x 90 d, depth 50 d, rigid lid        -0.03 +- 0.04   0.03 +- 0.01   0.09 +- 0.02   65 to 110 s
-    the same, dt x 2.5                                       0.06 +- 0.01                  90 s
-    the same, dt x 1                         -0.04 +- 0.05   0.06 +- 0.03                  200 to 245 s
-    120 x 90 d, depth 50 d, lid of grains    -0.17 +- 0.07   0.05 +- 0.02   0.08 +- 0.01   60 to 120 s
-    120 x 90 d, depth 50 d, no lid           -0.08 +- 0.03  -0.06 +- 0.02   0.11 +- 0.02   50 to 140 s
-    80 x 60 d, depth 30 d, rigid lid          0.00 +- 0.04   0.05 +- 0.02   0.06 +- 0.01   30 to 60 s
+    300 x 195 d, depth 105 d, dt x 5         -0.03 ± 0.03    0.06 ± 0.02    0.06 ± 0.01    420 to 550 s
+    120 x 90 d, depth 50 d, rigid lid        -0.03 ± 0.04    0.03 ± 0.01    0.09 ± 0.02    65 to 110 s
+    the same, dt x 2.5                                       0.06 ± 0.01                   90 s
+    the same, dt x 1                         -0.04 ± 0.05    0.06 ± 0.03                   200 to 245 s
+    120 x 90 d, depth 50 d, lid of grains    -0.17 ± 0.07    0.05 ± 0.02    0.08 ± 0.01    60 to 120 s
+    120 x 90 d, depth 50 d, no lid           -0.08 ± 0.03   -0.06 ± 0.02    0.11 ± 0.02    50 to 140 s
+    80 x 60 d, depth 30 d, rigid lid          0.00 ± 0.04    0.05 ± 0.02    0.06 ± 0.01    30 to 60 s
 
 Depth is pressure: without the weight of what lies above the disk sinks at T = 2 where it should rise, four errors off. At A = 3
 no scene under a rigid lid differs from the full one by two errors, nor does the time step. At A = 5 the cheaper scene seems
-too small: at T = 2 the disk sinks in the full one and rises under the lid, a difference of 0.10 +- 0.04; at T = 3 it rises in
+too small: at T = 2 the disk sinks in the full one and rises under the lid, a difference of 0.10 ± 0.04; at T = 3 it rises in
 both. So the first rising period of the disk lies between 2 and 3 in the full scene, as in Table 1 (2.5 to 3), and below 2 in
 the cheaper one. Heavy grains break into the cavity of a body at 30 d and bury it (lid=grains in the last scene). Seeds scatter
 by 1.5 times what one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the

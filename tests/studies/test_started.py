@@ -62,7 +62,7 @@ def test_a_run_comes_back_opened_and_is_made_once(place, capfd):
 
 def test_a_run_lists_what_it_holds_with_units_and_meanings(place):
     rows = graindrive.run("counter.py", out="here", progress=False).contents().set_index(["where", "name"])
-    assert rows.loc[("summary", "sum"), "value"] == "3 +- 0.5" and rows.loc[("summary", "sum"), "unit"] == "m"
+    assert rows.loc[("summary", "sum"), "value"] == "3.00 ± 0.50" and rows.loc[("summary", "sum"), "unit"] == "m"
     assert rows.loc[("parameters", "number"), "meaning"] == "how far to count"
     assert rows.loc[("series", "count"), "value"] == "(3,)"
     assert "processor time" in rows.loc[("summary", "core_seconds"), "meaning"]
