@@ -32,7 +32,7 @@ class Running:
     def named(self, label):
         """Return a label in which {} stands for the last average; it says so where that one's error is not to be believed."""
         words = label.replace("{}", str(self))
-        return words if self.resolved or not len(self.values) else f"{words} (error unresolved)"
+        return words if self.resolved or not len(self.values) else f"{words}\n(error unresolved)"
 
 
 def running(estimate, length, *, fewest=FEWEST_BLOCKS, points=POINTS):
@@ -58,20 +58,20 @@ def running_ratio(numerator, denominator, **options):
     return running(lambda n: ratio_mean(numerator[:n], denominator[:n]), len(numerator), **options)
 
 
-def draw_running(axes, x, found, *, colour, scale=1.0, label=None, band=0.25):
+def draw_running(axes, x, found, *, colour, scale=1.0, label=None, marker=None):
     """Draw a `Running` average as a line with a band of one standard error, against `x` (k,), where its samples end.
 
     `scale` divides the numbers. `label` may hold {}, which stands for the last number with its error; the line is what the
     legend shows.
     """
     values, errors = found.values / scale, np.nan_to_num(found.errors / abs(scale))
-    axes.fill_between(x, values - errors, values + errors, color=colour, alpha=band, linewidth=0)
-    axes.plot(x, values, color=colour, linewidth=1.2, label=label and found.named(label))
+    axes.fill_between(x, values - errors, values + errors, color=colour, alpha=0.25, linewidth=0)
+    axes.plot(x, values, color=colour, linewidth=1.2, marker=marker, label=label and found.named(label))
 
 
-def draw_convergence(axes, x, found, *, colour, label=None):
+def draw_convergence(axes, x, found, *, colour, label=None, marker=None):
     """Fill a panel with one `Running` average, the last value as a dashed line, in a range that the early noise does not set."""
-    draw_running(axes, x, found, colour=colour, label=label)
+    draw_running(axes, x, found, colour=colour, label=label, marker=marker)
     if not len(found.values):
         return
     axes.axhline(found.values[-1], color=BLACK, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)
