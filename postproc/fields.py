@@ -115,11 +115,14 @@ def draw_map(axes, fields, name, phase=None, **options):
     `options` go to pcolormesh: cmap, norm, vmin, vmax. Bins in which no grain was stay white. Figures of several maps want
     layout="compressed".
     """
+    from .figures import colour_bar  # it needs pyplot, which analysis alone does not
+
     options = {"cmap": "YlGnBu", "rasterized": True, "shading": "nearest", **options}
-    mesh = axes.pcolormesh(fields.x, fields.y, np.ma.masked_invalid(fields.map(name, phase)), **options)
-    bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.05, aspect=25)
-    bar.set_label(labelled(LABELS.get(name, name), fields.units.get("velocity" if name == "speed" else name)))
-    bar.ax.minorticks_off()
+    values = np.ma.masked_invalid(fields.map(name, phase))
+    mesh = axes.pcolormesh(fields.x, fields.y, values, **options)
+    beyond = "max" if values.count() and values.max() > mesh.norm.vmax else "neither"
+    label = labelled(LABELS.get(name, name), fields.units.get("velocity" if name == "speed" else name))
+    colour_bar(axes, mesh, label, extend=beyond)
     across, up = (labelled(f"${axis}$", fields.units[axis]) for axis in fields.axes)
     axes.set(aspect="equal", xlabel=across, ylabel=up)
     return mesh

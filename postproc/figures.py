@@ -9,13 +9,17 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon  # noqa: E402
 
 from ..base.whole_files import written  # noqa: E402
+from . import legends  # noqa: E402
 
 COLUMN_WIDTH = 3.4  # inches: one column of a two-column journal
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
 BLACK, ORANGE, SKY, GREEN, BLUE, VERMILLION, GREY = "#000000 #E69F00 #56B4E9 #009E73 #0072B2 #D55E00 #BBBBBB".split()
 PURPLE = "#CC79A7"
+TITLE_SHARE = 0.96  # of a figure's width, that a line of its title may fill
+BAR_GAP, BAR_WIDTH = 0.02, 0.035  # of a panel's width: a colour bar's distance from it and its width
 
 STYLE = {
     "font.size": 8,
@@ -24,6 +28,10 @@ STYLE = {
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
+    "legend.edgecolor": "none",
+    "legend.framealpha": 0.85,
+    "legend.borderaxespad": 0.3,
+    "legend.handlelength": 1.4,
     "axes.linewidth": 0.6,
     "lines.linewidth": 0.9,
     "xtick.direction": "in",
@@ -39,11 +47,63 @@ def save(figure, folder):
 
 
 def save_as(figure, folder, name):
-    """Write NAME.png and NAME.pdf into `folder`, each in one step, and close the figure."""
+    """Write NAME.png and NAME.pdf into `folder`, each in one step, and close the figure; legends move off the data first."""
+    legends.settle(figure)
     for ending in ("png", "pdf"):
         with written(Path(folder) / f"{name}.{ending}") as temporary:
             figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
     plt.close(figure)
+
+
+def set_title(figure, parts):
+    """Set a figure's title, `parts` with commas between, in as many lines as the figure's width asks for."""
+    text, lines = figure.suptitle("", fontsize=8), [""]
+    renderer, width = figure.canvas.get_renderer(), figure.bbox.width
+    for k, part in enumerate(filter(None, parts)):
+        longer = f"{lines[-1]}, {part}" if k else part
+        text.set_text(longer)
+        if k and text.get_window_extent(renderer).width > TITLE_SHARE * width:
+            lines[-1] += ","
+            lines.append(part)
+        else:
+            lines[-1] = longer
+    text.set_text("\n".join(lines))
+
+
+def colour_bar(axes, mappable, label, **options):
+    """Draw the colour bar of `mappable` beside a panel, exactly as tall as the panel; return it.
+
+    It is a part of the panel: `axes.clear()` takes it away. `options` go to matplotlib's colorbar, extend="max" …
+    """
+    beside = axes.inset_axes([1 + BAR_GAP, 0, BAR_WIDTH, 1])
+    bar = axes.figure.colorbar(mappable, cax=beside, label=label, **options)
+    beside.minorticks_off()
+    return bar
+
+
+def draw_body(axes, corners, *, zorder=3):
+    """Draw a body as itself: white, with the polygon of its corners (n, 2) as a bold outline."""
+    return axes.add_patch(Polygon(corners, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=zorder))
+
+
+def draw_disk(axes, centre, radius, *, angle=None, spin=0.0, zorder=3):
+    """Draw a disk about `centre` (2,); if it turns, with a mark at its `angle` [rad] and an arrow the way of its `spin`."""
+    axes.add_patch(Circle(centre, radius, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=zorder))
+    if angle is not None:
+        rim = np.array(centre) + radius * np.array([np.cos(angle), np.sin(angle)])
+        axes.plot(*np.column_stack([centre, rim]), color=BLACK, linewidth=0.8, zorder=zorder + 0.1)
+    draw_spin(axes, centre, 0.55 * radius, spin, zorder=zorder + 0.1)
+
+
+def draw_spin(axes, centre, radius, spin, *, zorder=3.1):
+    """Draw an arrow along two thirds of a circle about `centre`, counter-clockwise for spin > 0; nothing for 0."""
+    if not spin:
+        return
+    angle = np.radians(np.linspace(-60, 180, 40)[:: 1 if spin > 0 else -1])
+    x, y = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
+    axes.plot(x[:-3], y[:-3], color=VERMILLION, linewidth=0.8, zorder=zorder)
+    head = dict(arrowstyle="-|>", mutation_scale=5, color=VERMILLION, linewidth=0, shrinkA=0, shrinkB=0)
+    axes.add_patch(FancyArrowPatch((x[-6], y[-6]), (x[-1], y[-1]), zorder=zorder, **head))
 
 
 def draw_grains(axes, x, y, r, *, values=None, colour=GREY, **options):

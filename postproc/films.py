@@ -6,12 +6,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.animation import FFMpegWriter
 
+from ..base.errors import UsageError
 from ..base.whole_files import written
 from .figures import STYLE
 from .reader import Run, RunError
 
+NAME = "animation.mp4"
 FRAMES_PER_SECOND = 20
 FEWEST_FRAMES = 2
+NO_FFMPEG = "a film needs ffmpeg; install Debian's package ffmpeg (scripts/setup film)"
 INCHES, DOTS_PER_INCH = 6.4, 150
 
 
@@ -30,6 +33,16 @@ class GrainFrames:
         return self.run.frame(k)
 
 
+def require_possible(study, p):
+    """UsageError with the way out where a run of the `Study` with the parameters `p` could not be filmed; before it is made."""
+    if study.film is None:
+        raise UsageError(f"film=1: runs of {study.name} cannot be filmed; leave it out")
+    if p.frames < FEWEST_FRAMES:
+        raise UsageError(f"film=1 needs frames={FEWEST_FRAMES} or more, got frames={p.frames}; frames=200 makes 10 s")
+    if not FFMpegWriter.isAvailable():
+        raise UsageError(f"film=1: {NO_FFMPEG}, or leave it out")
+
+
 def film(path, prepared, frames_of=GrainFrames):
     """Write animation.mp4 into the run folder `path`, in one step, and return its path; raises RunError where that cannot be.
 
@@ -42,8 +55,8 @@ def film(path, prepared, frames_of=GrainFrames):
     if len(frames) < FEWEST_FRAMES:
         raise RunError(f"{path} holds {len(frames)} frames, a film needs more; run again with frames=200 or so")
     if not FFMpegWriter.isAvailable():
-        raise RunError("a film needs ffmpeg; install Debian's package ffmpeg (scripts/setup film)")
-    target = Path(path) / "animation.mp4"
+        raise RunError(NO_FFMPEG)
+    target = Path(path) / NAME
     with plt.rc_context(STYLE), written(target) as temporary:
         shoot(frames, temporary, *prepared(run))
     return target
@@ -64,4 +77,5 @@ def shoot(frames, target, figure, draw):
 def picture_size(width, height):
     """Return (width, height) [inches] for a view of any unit, so that both have an even number of dots, as the codec asks."""
     inches = np.array([INCHES, 0.6 + INCHES * height / width])
-    return tuple(np.round(inches * DOTS_PER_INCH / 2) * 2 / DOTS_PER_INCH)
+    dots = np.round(inches * DOTS_PER_INCH / 2) * 2
+    return tuple((dots + 0.25) / DOTS_PER_INCH)  # the writer cuts to whole dots: round-off must not take one

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.numbers import with_error
+
 FEWEST_REPEATS = 3  # with fewer, their scatter says too little about their error
 
 
@@ -15,7 +17,7 @@ class Measured:
     error: float
 
     def __str__(self):
-        return in_words(self.value, self.error)
+        return with_error(self.value, self.error)
 
     def __abs__(self):
         """The number without its sign."""
@@ -35,26 +37,6 @@ class Measured:
 
 
 UNKNOWN = Measured(float("nan"), float("nan"))
-
-
-def in_words(value, error):
-    """Return a value with its standard error, both rounded at the error's second digit: "10.9 ± 4.0", "1230 ± 120".
-
-    An error of zero, or below round-off, is left out; one that is not known is said to be so. Numbers that would need many
-    zeros get a power of ten: "(3.10 ± 0.12)e-07". Every place that shows a number with its error calls this.
-    """
-    if not error > 1e-9 * abs(value) or np.isinf(error):
-        return f"{value:.4g}" + (" (error unknown)" if np.isnan(error) else "")
-    power = decimal_power(max(abs(value), error))
-    if not -4 <= power <= 6:
-        return f"({in_words(value / 10.0**power, error / 10.0**power)})e{power:+03d}"
-    digits = 1 - decimal_power(error)
-    return " ± ".join(f"{round(number, digits):.{max(0, digits)}f}" for number in (value, error))
-
-
-def decimal_power(number):
-    """Return the power of ten of a positive number that is rounded to two digits: 1 for 99.4, 2 for 99.6."""
-    return int(f"{number:.1e}".split("e")[1])
 
 
 def exactly(number):

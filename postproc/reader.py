@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..base.numbers import with_error
 from ..runs import run_data, run_file, summary_file
 from . import quantities
-from .measured import in_words
 
 GRAIN, BASE, BEAD = 0, 1, 2  # values of a frame's `role`
 INTRUDER = -1  # in a contact's `i` or `j`; what is below stands for flat walls
@@ -201,7 +201,7 @@ class Run:
         for name, value in values.items():
             if not name.endswith("_err"):
                 error = values.get(f"{name}_err")
-                told = value if error is None else in_words(value, error)
+                told = value if error is None else with_error(value, error)
                 rows.append(("summary", name, told, units.get(name, ""), quantities.meaning_of("summary", name)))
         rows += [
             ("series", name, f"({len(column)},)", self.units.get(name, ""), quantities.meaning_of("series", name))

@@ -369,6 +369,7 @@ STUDY = Study(
     check=check,
     run=run,
     figure=Lazily("graindrive.postproc.magnus.figure", "draw"),
+    film=Lazily("graindrive.postproc.magnus.animation", "film"),
     report=Lazily("graindrive.postproc.magnus.campaign", "REPORT"),
     constants={
         "d": Constant(D, "m", "mean diameter of the grains"),

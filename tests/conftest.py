@@ -3,6 +3,7 @@
 import os
 import signal
 
+import pytest
 from hypothesis import settings
 
 # No test is timed; on a checking machine the same examples every time, elsewhere new ones.
@@ -14,3 +15,21 @@ def pytest_configure():
     """Let Ctrl-C reach the programs under test: started in the background, a shell has it ignored, and children inherit that."""
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture
+def figures_drawn(monkeypatch):
+    """Assert of every figure that the test saves that no legend hides data; return the list of the names of those seen."""
+    import free_legends
+    from graindrive.postproc import figures
+
+    close, seen = figures.plt.close, []
+
+    def look(figure):
+        hidden = free_legends.hidden(figure)
+        assert not hidden, f"legends over data in {hidden}"
+        seen.append(figure)
+        close(figure)
+
+    monkeypatch.setattr(figures.plt, "close", look)
+    return seen

@@ -34,7 +34,7 @@ class Section:
 class PlannedFigure:
     """How a figure of a report is made: its file's `name`, the `sweep` that it shows, title, caption, and two functions.
 
-    `claims(campaign, rows)` tests the paper's claims on the sweep's rows, `draw(campaign, rows, claims)` returns the figure.
+    `claims(campaign, rows)` tests the paper's claims on the sweep's rows, `draw(campaign, rows)` returns the figure.
     """
 
     name: str
@@ -48,7 +48,5 @@ class PlannedFigure:
         """Draw the figure into the campaign's folder `figures`; return its `Section`."""
         rows = campaign.sweep(self.sweep)
         claims = tuple(self.claims(campaign, rows))
-        figures.save_as(
-            self.draw(campaign, rows, claims), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}"
-        )
+        figures.save_as(self.draw(campaign, rows), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}")
         return Section(self.title, self.name, self.caption, claims)

@@ -1,28 +1,17 @@
-"""What figures of campaigns share: a canvas with claims and verdicts below its axes, points with error bars, curves."""
+"""What figures of campaigns share: a canvas, points with error bars, curves. Claims stand in the report, not in figures."""
 
 import numpy as np
 
 from ..figures import BLACK, BLUE, GREEN, ORANGE, SKY, VERMILLION, plt
 from .runs import curve
-from .verdicts import Verdict
 
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, BLACK)
 MARKERS = "osD^vP"
-LINE_INCHES = 0.135  # height of a line of the caption
-VERDICT_COLOURS = {Verdict.REPRODUCED: GREEN, Verdict.NOT_REPRODUCED: VERMILLION, Verdict.NOT_DECIDED: "#666666"}
 
 
-def canvas(rows, columns, claims, *, width, height):
-    """Return (figure, axes (rows, columns)) with room for the claims below; `width`, `height` of the axes in inches."""
-    room = LINE_INCHES * (len(claims) + 1.5)
-    figure, axes = plt.subplots(rows, columns, figsize=(width, height + room), squeeze=False)
-    figure.set_layout_engine("constrained", rect=(0, room / (height + room), 1, height / (height + room)))
-    for line, claim in enumerate(claims):
-        y = LINE_INCHES * (len(claims) - line) / (height + room)
-        text, colour = f"{claim.text} (expected: {claim.expected}): {claim.number}", VERDICT_COLOURS[claim.verdict]
-        figure.text(0.99, y, claim.verdict.value, fontsize=6, color=colour, weight="bold", ha="right")
-        figure.text(0.01, y, text, fontsize=6)
-    return figure, axes
+def canvas(rows, columns, *, width, height):
+    """Return (figure, axes (rows, columns)) of that size [inches], in one layout."""
+    return plt.subplots(rows, columns, figsize=(width, height), squeeze=False, layout="constrained")
 
 
 def look(k, label):
@@ -45,7 +34,8 @@ def draw_curves(axes, rows, by, key, name, label):
 
 
 def share_y(axes):
-    """Give all axes the range that holds them all."""
+    """Give all axes the range that holds them all, and keep it one if a legend asks for more of it."""
     low, high = zip(*(panel.get_ylim() for panel in axes))
-    for panel in axes:
-        panel.set_ylim(min(low), max(high))
+    for panel in axes[1:]:
+        panel.sharey(axes[0])
+    axes[0].set_ylim(min(low), max(high))

@@ -10,7 +10,7 @@ from matplotlib.colors import PowerNorm
 from matplotlib.patches import Wedge
 
 from .. import films
-from ..figures import BLACK, GREY, draw_grains
+from ..figures import BLACK, GREY, colour_bar, draw_grains, set_title
 from ..reader import BEAD, Frame
 from . import figure as drawing
 from .flow_frames import FlowFrame, FlowFrames
@@ -75,9 +75,7 @@ def prepared(run):
     figure, axes = plt.subplots(
         1, len(models), figsize=films.picture_size(width, height), squeeze=False, layout="constrained"
     )
-    figure.suptitle(drawing.title(run))
-    bar = ScalarMappable(norm, MAP)
-    figure.colorbar(bar, ax=list(axes[0]), pad=0.01, extend="max", label=r"$|\mathbf{v}|/\Omega D$")
+    set_title(figure, drawing.title(run))
     panels = dict(zip(models, axes[0]))
 
     def draw(moment):
@@ -86,6 +84,7 @@ def prepared(run):
             t = draw_model(panel, name, moment, p, norm)
             panel.set(xlim=(-1.06 * radius, 1.06 * radius), ylim=(-1.06 * radius, 1.06 * radius), aspect="equal")
             panel.set(xlabel="$X$  [$d$]", ylabel="$Y$  [$d$]")
+            colour_bar(panel, ScalarMappable(norm, MAP), r"$|\mathbf{v}|/\Omega D$", extend="max")
             ended = " (steady, its run has ended)" if t < moment.t - moments.apart else ""
             panel.set_title(f"{name}, turned by {np.degrees(p['angular_velocity'] * t):.1f}°{ended}")
 

@@ -26,6 +26,11 @@ class Blocks:
     def __len__(self):
         return len(self.weight)
 
+    def first(self, n):
+        """Return the first `n` blocks."""
+        parts = (part[:n] for part in (self.fraction, self.flux_x, self.flux_y, self.weight))
+        return Blocks(self.x, self.y, *parts, self.surface_level)
+
     def mean(self, without=None):
         """Return the `FlowField` of the mean over all blocks, or over all but one."""
         weight = np.array(self.weight, dtype=float)

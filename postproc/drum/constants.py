@@ -44,10 +44,10 @@ def constants_claims(campaign, rows):
     return claims
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """u/(Omega D) against z/D, a panel for each speed: grains open, a colour for each set of constants."""
     groups = list(by_constants(campaign, rows))
-    figure, axes = canvas(1, max(1, len(groups)), claims, width=2 * figures.COLUMN_WIDTH, height=2.6)
+    figure, axes = canvas(1, max(1, len(groups)), width=2 * figures.COLUMN_WIDTH, height=2.6)
     for panel, (diameter, omega, grains, fluids) in zip(axes[0], groups):
         z, u, error = grains.scaled
         panel.errorbar(z, u, np.nan_to_num(error), **look(0, "dem", "grains"))

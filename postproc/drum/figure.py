@@ -1,16 +1,33 @@
-"""The figure of one drum run: grains with their free surface, velocities, u(z) with rigid rotation, angle over turn."""
+"""The figure of one drum run: grains with their free surface, velocities, u(z), angle over turn, running means."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Circle
 
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, draw_grains, save
+from ...base.numbers import with_error
+from ..figures import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    GREEN,
+    GREY,
+    STYLE,
+    VERMILLION,
+    colour_bar,
+    draw_grains,
+    save,
+    set_title,
+)
+from ..measured import Measured
 from ..reader import BEAD, Run
-from .blocks import models_in, read
+from ..running import draw_running, running
+from .blocks import models_in, read, steady_flow
 from .flow import analysed
 
 ARROWS = 4.8  # d, edge of the squares of the paper's Fig. 2
 NAMES = {"dem": "grains", "continuum": "continuum"}
+AVERAGES = (("surface_angle_deg", "angle of the surface\n[degrees]"), ("thickness_over_diameter", "thickness $h/D$"))
+RUNNING_POINTS = 8  # of a running mean: every one is the whole analysis, as often as it has blocks
 LOOKS = {"dem": dict(color=BLUE, marker="o"), "continuum": dict(color=VERMILLION, marker="s")}
 
 
@@ -18,35 +35,44 @@ def draw(path, frame=-1):
     """Draw figure.png and figure.pdf of the run folder `path` from its data alone."""
     run = Run(path)
     p = run.parameters
-    fields = {model: read(run, model).mean().within(p["drum_diameter"]) for model in models_in(run)}
+    blocks = {model: read(run, model) for model in models_in(run)}
+    fields = {model: some.mean().within(p["drum_diameter"]) for model, some in blocks.items()}
     found = {model: analysed(field, p["drum_diameter"], p["angular_velocity"]) for model, field in fields.items()}
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(2, 2, figsize=(2 * COLUMN_WIDTH, 5.6), layout="constrained")
-        figure.suptitle(title(run), fontsize=8)
-        draw_bed(figure, axes[0, 0], run, frame, fields, found)
+        figure, axes = plt.subplots(
+            3, 2, figsize=(2 * COLUMN_WIDTH, 7.4), height_ratios=[1.25, 1, 0.75], layout="constrained"
+        )
+        set_title(figure, title(run))
+        draw_bed(axes[0, 0], run, frame, fields, found)
         draw_maps(axes[0, 1], run, fields, found)
         draw_profiles(axes[1, 0], run, found)
         draw_history(axes[1, 1], run, found)
-        for letter, panel in zip("abcd", axes.flat):
+        draw_averages(axes[2], p, blocks)
+        for letter, panel in zip("abcdef", axes.flat):
             panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
 
 def title(run):
-    """Return in words which drum turned how fast, and what came out."""
+    """Return in words which drum turned how fast, by which seed, and what came out: the parts of a title."""
     p, found = run.parameters, run.summary
-    words = rf"$D$ = {p['drum_diameter']:g} $d$, $\Omega$ = {p['angular_velocity']:.3g} $\sqrt{{g/d}}$, Fr = {p['froude']:.3g}"
+    parts = [
+        rf"$D$ = {p['drum_diameter']:g} $d$",
+        rf"$\Omega$ = {p['angular_velocity']:.3g} $\sqrt{{g/d}}$",
+        f"Fr = {p['froude']:.3g}",
+        f"seed {p['seed']}" if "seed" in p and p.get("model") != "continuum" else "",
+    ]
     for name, symbol, scale in (
-        ("surface_angle_deg", r"$\theta$ = {:.1f}°", 1),
-        ("thickness_over_diameter", r"$h/D$ = {:.3f}", 1),
-        ("dem_continuum_difference", r"difference {:.1f} %", 100),
+        ("surface_angle_deg", r"$\theta$ = {} °", 1),
+        ("thickness_over_diameter", "$h/D$ = {}", 1),
+        ("dem_continuum_difference", "difference {} %", 100),
     ):
         if found.get(name) is not None:
-            words += ", " + symbol.format(scale * found[name])
-    return words
+            parts.append(symbol.format(with_error(scale * found[name], scale * (found.get(f"{name}_err") or 0.0))))
+    return parts
 
 
-def draw_bed(figure, axes, run, frame, fields, found):
+def draw_bed(axes, run, frame, fields, found):
     """Grains of a frame by their speed, or the speed of the field where there are no frames, with the free surface."""
     p = run.parameters
     scale, radius = p["angular_velocity"] * p["drum_diameter"], p["drum_diameter"] / 2
@@ -63,8 +89,7 @@ def draw_bed(figure, axes, run, frame, fields, found):
         shown = np.ma.masked_where(~(field.fraction > field.surface_level / 2), speed)
         mesh = axes.pcolormesh(field.x, field.y, shown, shading="nearest", rasterized=True, **limits)
         axes.add_patch(Circle((0, 0), radius, facecolor="none", edgecolor=BLACK, linewidth=0.8))
-    bar = figure.colorbar(mesh, ax=axes, pad=0.02, fraction=0.05, aspect=25)
-    bar.set_label(r"$|\mathbf{v}|/\Omega D$")
+    colour_bar(axes, mesh, r"$|\mathbf{v}|/\Omega D$", extend="max")
     for model, one in found.items():
         draw_surface(axes, one.surface, fields[model], radius, LOOKS[model]["color"])
     frame_drum(axes, radius)
@@ -187,3 +212,23 @@ def draw_history(axes, run, found):
             axes.plot(z, one.profile.fraction, color=LOOKS[model]["color"], label=NAMES[model])
         axes.set(xlabel="$z/D$, depth below the axis", ylabel="fraction", xlim=(-0.1, 0.5))
     axes.legend()
+
+
+def draw_averages(panels, p, blocks):
+    """The surface's angle and h/D over the first blocks in time, against how many they are: are they converged?"""
+    for model, some in blocks.items():
+        flows = {}
+
+        def number(name, n):
+            if n not in flows:
+                flows[n] = steady_flow(some.first(n), p["drum_diameter"], p["angular_velocity"])
+            summary = flows[n].summary
+            return Measured(summary[name], summary[f"{name}_err"])
+
+        for panel, (name, _) in zip(panels, AVERAGES):
+            found = running(lambda n: number(name, n), len(some), fewest=2, points=RUNNING_POINTS)
+            draw_running(panel, found.ends, found, colour=LOOKS[model]["color"], label=f"{NAMES[model]}: {{}}")
+    for panel, (_, label) in zip(panels, AVERAGES):
+        panel.set(xlabel="blocks in time averaged", ylabel=label)
+        panel.xaxis.get_major_locator().set_params(integer=True)
+        panel.legend()

@@ -93,9 +93,9 @@ def lever_claims(campaign, rows):
     return claims
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """Error of u(z), h/D and angle against the seconds of a core, a colour for each lever, its values beside the points."""
-    figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.6)
+    figure, ((left, middle, right),) = canvas(1, 3, width=2 * figures.COLUMN_WIDTH, height=2.6)
     for k, (lever, found) in enumerate(by_lever(campaign, rows).items()):
         style = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linewidth=0.6, label=SYMBOLS[lever])
         seconds = np.array([one.seconds for one in found])

@@ -24,7 +24,7 @@ def label_of(model, text):
     return text if model == "dem" else f"{text}, continuum"
 
 
-def velocity_maps(campaign, rows, claims):
+def velocity_maps(campaign, rows):
     """Fig. 2: velocities of grains and continuum in the smallest drum at its middle speed."""
     diameter, group = next(by_diameter(rows))
     speeds = sorted(group["angular_velocity"].unique())
@@ -32,7 +32,7 @@ def velocity_maps(campaign, rows, claims):
     shown = {model: field_of(campaign, same, model) for model in MODELS}
     shown = {model: field.within(diameter) for model, field in shown.items() if field}
     count = max(1, len(shown))
-    figure, axes = canvas(1, count, claims, width=count * figures.COLUMN_WIDTH, height=3.1)
+    figure, axes = canvas(1, count, width=count * figures.COLUMN_WIDTH, height=3.1)
     figure.get_layout_engine().set(h_pad=0.12)  # room for the titles above panels of fixed aspect
     for k, (model, field) in enumerate(shown.items()):
         panel, radius = axes[0, k], diameter / 2
@@ -47,10 +47,10 @@ def velocity_maps(campaign, rows, claims):
     return figure
 
 
-def profiles(campaign, rows, claims):
+def profiles(campaign, rows):
     """Fig. 3: u(z), a panel for each D, a colour for each speed, with rigid rotation."""
     drums = list(by_diameter(rows))
-    figure, axes = canvas(1, len(drums), claims, width=2 * figures.COLUMN_WIDTH, height=2.6)
+    figure, axes = canvas(1, len(drums), width=2 * figures.COLUMN_WIDTH, height=2.6)
     for panel, (diameter, group) in zip(axes[0], drums):
         for k, (_, omega, same) in enumerate(by_speed(group)):
             for model in MODELS:
@@ -67,10 +67,10 @@ def profiles(campaign, rows, claims):
     return figure
 
 
-def collapse(campaign, rows, claims):
+def collapse(campaign, rows):
     """Fig. 5: u/(ΩD) against z/D, a panel for each Fr, a colour for each D."""
     groups = list(equal_froude(rows))
-    figure, axes = canvas(1, max(1, len(groups)), claims, width=2 * figures.COLUMN_WIDTH, height=2.6)
+    figure, axes = canvas(1, max(1, len(groups)), width=2 * figures.COLUMN_WIDTH, height=2.6)
     for panel, (same, group) in zip(axes[0], groups):
         for k, diameter in enumerate(sorted(group["drum_diameter"].unique())):
             for model in MODELS:
@@ -87,9 +87,9 @@ def collapse(campaign, rows, claims):
     return figure
 
 
-def thickness(_campaign, rows, claims):
+def thickness(_campaign, rows):
     """Figs. 4 and 6: h against Ω, h/D against Fr with the fit; and the angle of the surface, which the paper does not give."""
-    figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.5)
+    figure, ((left, middle, right),) = canvas(1, 3, width=2 * figures.COLUMN_WIDTH, height=2.5)
     draw_by_diameter(middle, rows, "froude", "thickness_over_diameter")
     draw_by_diameter(left, rows, "angular_velocity", "thickness_over_diameter", times_diameter=True)
     draw_by_diameter(right, rows, "froude", "surface_angle_deg")
@@ -116,9 +116,9 @@ def draw_by_diameter(axes, rows, key, name, times_diameter=False):
             draw_points(axes, x, points, **look(k, model, label_of(model, f"D = {diameter:g} d")))
 
 
-def fractions(campaign, rows, claims):
+def fractions(campaign, rows):
     """Fig. 8: solid fraction against z/D, for each D its middle speed."""
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.6)
+    figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=2.6)
     for k, (diameter, group) in enumerate(by_diameter(of_model(rows, "dem", "packing_fraction")[0])):
         speeds = sorted(group["angular_velocity"].unique())
         found = mean_profile(campaign, group[group["angular_velocity"] == speeds[len(speeds) // 2]], "dem")
@@ -131,9 +131,9 @@ def fractions(campaign, rows, claims):
     return figure
 
 
-def surfaces(_campaign, rows, claims):
+def surfaces(_campaign, rows):
     """Fig. 9: z of the surface over D against Fr."""
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.3)
+    figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=2.3)
     draw_by_diameter(axes, rows, "froude", "surface_over_diameter")
     axes.axhline(0, color=GREY, linewidth=0.6)
     axes.set(xlabel="Fr", ylabel="z$_{surface}$/D", ylim=(-0.1, 0.1))

@@ -42,7 +42,7 @@ def label(row):
     return row["case"] + ", single" * (row["precision"] == "single") + ", YADE's loop" * (row["loop"] == "yade")
 
 
-def draw_outcomes(_campaign, rows, _claims):
+def draw_outcomes(_campaign, rows):
     """How much of its bound each case uses up."""
     groups = [group for _, group in ordered(rows).groupby(["loop", "precision"], sort=False)]
     longest = max(len(group) for group in groups)
@@ -71,7 +71,7 @@ def runs_of(campaign, rows, start):
             yield row, campaign.run(row["run"]).group("trials")
 
 
-def draw_steps(campaign, rows, _claims):
+def draw_steps(campaign, rows):
     """The largest stable step of a pair over theory, and as a share of the contact's duration, by law and direction."""
     figure, (left, right) = plt.subplots(
         1, 2, figsize=(2 * figures.COLUMN_WIDTH, 2.6), layout="constrained", sharey=True
@@ -105,7 +105,7 @@ def draw_steps(campaign, rows, _claims):
     return figure
 
 
-def draw_far(campaign, rows, _claims):
+def draw_far(campaign, rows):
     """Error of an impact against its distance from the origin; energy and place of a bound pair against steps."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(2 * figures.COLUMN_WIDTH, 2.4), layout="constrained")
     for k, (row, trials) in enumerate(runs_of(campaign, rows, "far_")):
@@ -123,7 +123,7 @@ def draw_far(campaign, rows, _claims):
     return figure
 
 
-def draw_friction(campaign, rows, _claims):
+def draw_friction(campaign, rows):
     """Velocity of the surfaces after an impact against mu; errors of a drum's continuum against its largest viscosity."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(2 * figures.COLUMN_WIDTH, 2.4), layout="constrained")
     for k, (row, trials) in enumerate(runs_of(campaign, rows, "friction_")):

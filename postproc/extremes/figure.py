@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save, set_title
 from ..reader import Run
 
 COLOURS = {"right": GREEN, "guard": BLUE, "bound": BLACK, "wrong": VERMILLION}
@@ -14,7 +14,7 @@ def draw(path, frame=-1):
     found, trials = run.summary, run.group("trials")
     with plt.rc_context(STYLE):
         figure, (axes, below) = plt.subplots(2, 1, figsize=(COLUMN_WIDTH, 3.6), layout="constrained")
-        figure.suptitle(f"{run.parameters['case']}: {found['outcome']}", fontsize=8)
+        set_title(figure, [f"{run.parameters['case']}: {found['outcome']}"])
         axes.axvspan(found["expected"] - found["bound"], found["expected"] + found["bound"], color=GREY, alpha=0.5)
         axes.axvline(found["expected"], color=BLACK, linewidth=0.7)
         axes.plot(found["measured"], 0, "o", color=COLOURS[found["outcome"]])

@@ -4,10 +4,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import PowerNorm
-from matplotlib.patches import Polygon
 
-from .. import films
-from ..figures import BLACK, GREY, draw_grains
+from .. import figures, films
+from ..figures import GREY, colour_bar, draw_grains, set_title
 from ..reader import GRAIN
 from . import figure as drawing
 
@@ -23,14 +22,12 @@ def prepared(run):
     """Return a figure and the function that draws a frame into it."""
     norm, (width, top) = PowerNorm(0.5, 0, 1), view(run)
     figure, axes = plt.subplots(figsize=films.picture_size(width, top + 1), layout="constrained")
-    figure.suptitle(drawing.title(run))
-    figure.colorbar(
-        ScalarMappable(norm, MAP), ax=axes, pad=0.01, extend="max", label="speed in the bed's frame over $U_0$"
-    )
+    set_title(figure, drawing.title(run))
 
     def draw(bed):
         axes.clear()
         draw_cut(axes, run, bed, norm)
+        colour_bar(axes, ScalarMappable(norm, MAP), "speed in the bed's frame over $U_0$", extend="max")
         axes.set(xlim=(0, width), ylim=(-1, top), aspect="equal", xlabel="$x$  [$d$]", ylabel="$z$  [$d$]")
         axes.set_title(f"$t$ = {bed.t:.4g} s")
 
@@ -72,4 +69,4 @@ def draw_body(axes, run, bed, d):
     place = bed.place_solid(np.insert(outline, 1, 0.0, axis=1))[:, [0, 2]]
     for image in (-1, 0, 1):
         corners = (place + [image * bed.periods[0], 0]) / d
-        axes.add_patch(Polygon(corners, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
+        figures.draw_body(axes, corners)

@@ -1,15 +1,15 @@
 """The figure of one lift run: forces over travel, stress by angle, profile of the bed, and the fields around the body."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Polygon
 
-from .. import fields
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, save
-from ..measured import Measured
+from .. import fields, figures
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, STYLE, VERMILLION, save, set_title
 from ..reader import Run, RunError
+from ..running import draw_convergence, draw_running, running_mean
 
 
 def draw(path, frame=-1):
@@ -18,48 +18,67 @@ def draw(path, frame=-1):
     around = fields_of(run)
     with plt.rc_context(STYLE):
         columns = [1.0, 0.62] if around else [1.0]  # maps are square
-        figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 5.4), layout="constrained")
-        figure.suptitle(title(run), fontsize=8)
+        figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 6.6), layout="constrained")
+        set_title(figure, title(run))
         parts = np.atleast_1d(figure.subfigures(1, len(columns), width_ratios=columns))
-        panels = list(parts[0].subplots(3, 1, height_ratios=[1.3, 1.3, 0.8]))
+        panels = list(parts[0].subplots(4, 1, height_ratios=[1.4, 1, 1.3, 0.8]))
         draw_forces(panels[0], run)
-        draw_stress(panels[1], run)
-        draw_profile(panels[2], run)
+        draw_lift(panels[1], run)
+        draw_stress(panels[2], run)
+        draw_profile(panels[3], run)
         if around:
             panels += draw_fields(parts[1], run, around)
-        for letter, panel in zip("abcdefg", panels):
+        for letter, panel in zip("abcdefgh", panels):
             panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
 
 def title(run):
-    """Return in words what was dragged how."""
+    """Return in words what was dragged how, and by which seed: the parts of a title."""
     p, found = run.parameters, run.summary
-    lid = f", lid of {p['lid_density']:g} $\\rho_g$" if p["lid_density"] else ""
-    bulk = "" if p["bulk_gravity"] else ", no gravity in the bulk"
-    return (
-        f"{p['shape']}, $D$ = {found['body_height']:.3g} $d$, $\\tilde h/D$ = {found['depth_over_d']:.3g}, "
-        f"$U_0$ = {p['speed']:g} m/s{lid}{bulk}"
-    )
+    return [
+        Path(str(p["shape"])).stem.replace("$", r"\$"),
+        f"$D$ = {found['body_height']:.3g} $d$",
+        rf"$\tilde h/D$ = {found['depth_over_d']:.3g}",
+        f"$U_0$ = {p['speed']:g} m/s",
+        rf"lid of {p['lid_density']:g} $\rho_g$" if p["lid_density"] else "",
+        "" if p["bulk_gravity"] else "no gravity in the bulk",
+        f"seed {p['seed']}",
+    ]
 
 
 def draw_forces(axes, run):
-    """C_d and a tenth of the lift over the buoyancy against travel, with their means over the steady state."""
-    found, travel = run.summary, run.series["travel"]
-    drag = -run.series["fx"] * found["drag_coefficient"] / found["drag"]
-    lift = run.series["fz"] / found["buoyancy"] / 10
-    names = ("drag_coefficient", 1, "$C_d$ {}"), ("lift_over_buoyancy", 10, "lift {} buoyancies")
-    for force, (name, scale, words), colour in zip((drag, lift), names, (BLUE, VERMILLION)):
-        axes.plot(travel, force, color=colour, linewidth=0.4, alpha=0.5)
-        start, mean = found["steady_from"], Measured(found[name], found[f"{name}_err"] or 0.0)
-        ends, height = [start, start + found["steady_travel"]], 2 * [mean.value / scale]
-        axes.plot(ends, height, color=colour, linewidth=1.5, label=words.format(mean))
-    axes.axvspan(found["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
+    """C_d and a tenth of the lift over the buoyancy against travel, with their running means over the steady state."""
+    travel, steady = run.series["travel"], steady_rows(run)
+    words = "$C_d$ = {}", "lift {} buoyancies"
+    for force, scale, label, colour in zip(over_units(run), (1, 10), words, (BLUE, VERMILLION)):
+        axes.plot(travel, force / scale, color=colour, linewidth=0.4, alpha=0.4)
+        mean = running_mean(force[steady])
+        draw_running(axes, travel[steady][mean.ends - 1], mean, colour=colour, scale=scale, label=label)
+    axes.axvspan(run.summary["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
     axes.axhline(0, color=BLACK, linewidth=0.4)
-    axes.set(xlabel="travel  [$d$]", ylabel="$C_d$,  lift over 10 buoyancies", xlim=(0, travel[-1]))
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
-    axes.legend(loc="upper left", ncols=2, frameon=False, handlelength=1, columnspacing=1, fontsize=6)
+    axes.set(xlabel="travel  [$d$]", ylabel="$C_d$,  lift over\n10 buoyancies", xlim=(0, travel[-1]))
+    axes.legend()
+
+
+def over_units(run):
+    """Return C_d and the lift over the buoyancy as series, each (n,)."""
+    found = run.summary
+    return -run.series["fx"] * found["drag_coefficient"] / found["drag"], run.series["fz"] / found["buoyancy"]
+
+
+def steady_rows(run):
+    """Return which rows of the series the averages of the steady state rest on, (n,)."""
+    return run.series["travel"] >= run.summary["steady_from"]
+
+
+def draw_lift(axes, run):
+    """The lift over the first part of the steady state, against how long that part is: is it converged?"""
+    travel, steady = run.series["travel"], steady_rows(run)
+    found = running_mean(over_units(run)[1][steady])
+    draw_convergence(axes, travel[steady][found.ends - 1], found, colour=VERMILLION, label="lift {} buoyancies")
+    axes.set(xlabel="averaged to a travel of  [$d$]", ylabel="lift over\nbuoyancy", xlim=(0, travel[-1]))
+    axes.legend()
 
 
 def draw_stress(axes, run):
@@ -78,7 +97,7 @@ def draw_stress(axes, run):
     )
     axes.set_xticks(np.linspace(-1, 1, 5))
     axes.axvline(0, color=BLACK, linewidth=0.4)
-    axes.legend(loc="upper right")
+    axes.legend()
 
 
 def draw_profile(axes, run):
@@ -87,7 +106,7 @@ def draw_profile(axes, run):
     for name, colour, label in (("fraction", BLUE, "before"), ("fraction_after", VERMILLION, "after")):
         axes.plot(found["z"] / run.summary["grain_diameter"], found[name], color=colour, linewidth=0.7, label=label)
     axes.set(xlabel="$z$  [$d$]", ylabel=r"$\phi$")
-    axes.legend(loc="lower center")
+    axes.legend()
 
 
 def fields_of(run):
@@ -129,4 +148,4 @@ def draw_body(axes, run):
     """The section of an endless body about the origin; others are seen by the grains that they lack."""
     outline = run.group("intruder")["outline"] / run.summary["grain_diameter"]
     if len(outline):
-        axes.add_patch(Polygon(outline, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
+        figures.draw_body(axes, outline)

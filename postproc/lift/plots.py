@@ -1,4 +1,4 @@
-"""The figures of a lift campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
+"""The figures of a lift campaign, numbered as in the paper."""
 
 import numpy as np
 
@@ -11,17 +11,15 @@ from .figure import draw_body, fields_of
 
 KINDS = (("normal", "no lid"), ("lid", "lid"), ("no weight", "lid, no weight in the bulk"))
 
-LABEL_ROOM = 0.02  # of the figure's width: the labels of square maps stand outside what the layout reckons with
-
 
 def kind_of(row):
     """Return which of the paper's three runs a row is."""
     return "no weight" if not row["bulk_gravity"] else "lid" if row["lid_density"] > 0 else "normal"
 
 
-def against_depth(_campaign, rows, claims):
+def against_depth(_campaign, rows):
     """Fig. 8: C_d and the lift over the buoyancy against h~/D, for the three kinds of run."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.4)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.4)
     kinds = rows.apply(kind_of, axis=1)
     for k, (kind, label) in enumerate(KINDS):
         group = rows[kinds == kind]
@@ -35,9 +33,9 @@ def against_depth(_campaign, rows, claims):
     return figure
 
 
-def stress_by_angle(campaign, rows, claims):
+def stress_by_angle(campaign, rows):
     """Figs. 11(b, d) and 12: sigma_n over P_0 by angle, with and without weight, and the differences over rho g D."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.4)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.4)
     for group, style in ((with_weight(rows), "-"), (without_weight(rows), ":")):
         for k, (_, row) in enumerate(group.sort_values("depth_over_d").iterrows()):
             theta, normal = stress(campaign, row["run"])
@@ -52,11 +50,11 @@ def stress_by_angle(campaign, rows, claims):
     return figure
 
 
-def around_body(campaign, rows, claims):
+def around_body(campaign, rows):
     """Figs. 9 and 13: pressure and speed with streamlines around the body, one column a run."""
     found = [(row, fields_of(campaign.run(row["run"]))) for _, row in rows.iterrows()]
     found = [(row, around) for row, around in found if around is not None]
-    figure, axes = canvas(2, max(1, len(found)), claims, width=2 * figures.COLUMN_WIDTH, height=3.6)
+    figure, axes = canvas(2, max(1, len(found)), width=2 * figures.COLUMN_WIDTH, height=3.6)
     for column, (row, around) in zip(axes.T, found):
         fields.draw_map(column[0], around, "pressure", vmin=0, vmax=3)
         fields.draw_map(column[1], around, "speed", vmin=0, vmax=2)
@@ -66,16 +64,14 @@ def around_body(campaign, rows, claims):
             draw_body(panel, campaign.run(row["run"]))
     for panel in axes[:, 1:].flat:
         panel.set_ylabel("")  # as in the first column
-    left, bottom, width, height = figure.get_layout_engine().get()["rect"]
-    figure.get_layout_engine().set(rect=(left + LABEL_ROOM, bottom, width - LABEL_ROOM, height))
     return figure
 
 
 def against(key, label, name, symbol, by=None):
     """Return the function that draws a quantity against a key, a line for each value of the key `by`."""
 
-    def draw(_campaign, rows, claims):
-        figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.4)
+    def draw(_campaign, rows):
+        figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=2.4)
         for k, (value, group) in enumerate(rows.groupby(by) if by else [("", rows)]):
             draw_points(axes, *curve(group, key, name), **look(k, f"{by} = {value:g}" if by else None))
         axes.set(xlabel=label, ylabel=symbol, ylim=(0, None))

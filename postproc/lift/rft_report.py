@@ -213,9 +213,9 @@ def stress_part(plates, sign):
 # ---- the figure ------------------------------------------------------------------------------------------------------
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """alpha by tilt; C_d and lift over buoyancy against depth, by RFT and as measured; half-cylinders."""
-    figure, axes = canvas(2, 2, claims, width=2 * figures.COLUMN_WIDTH, height=4.8)
+    figure, axes = canvas(2, 2, width=2 * figures.COLUMN_WIDTH, height=4.8)
     ((stress, halves), (drag, lift)) = axes
     if complete(campaign, rows):
         plates = plates_of(campaign, rows)

@@ -1,55 +1,79 @@
-"""The figure of one Magnus run: forces over travel, distributions by angle, and the fields around the body if measured."""
+"""The figure of one Magnus run: forces and L/D as they converge, distributions by angle, fields around it if measured."""
 
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.patches import Circle, Polygon
 
 from .. import fields
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, save
-from ..measured import in_words
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, PURPLE, STYLE, VERMILLION, save, set_title
 from ..reader import Run, RunError
+from ..running import draw_convergence, draw_running, running_mean, running_ratio
+from . import body
 from .forces import drag_and_lift
 
 
 def draw(path, frame=-1):
-    """Draw figure.png and figure.pdf of the run folder `path` from its data alone."""
+    """Draw figure.png and figure.pdf of the run folder `path` from its data alone; `frame` says how the body is turned."""
     run = Run(path)
     around = fields_of(run)
     with plt.rc_context(STYLE):
         columns = [1.0, 0.85] if around else [1.0]
-        figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 6.4), layout="constrained")
-        figure.suptitle(title(run), fontsize=8)
+        figure = plt.figure(figsize=(COLUMN_WIDTH * sum(columns), 7.2), layout="constrained")
+        set_title(figure, title(run))
         parts = np.atleast_1d(figure.subfigures(1, len(columns), width_ratios=columns))
-        panels = list(parts[0].subplots(4, 1, height_ratios=[1.6, 1, 1, 1]))
+        panels = list(parts[0].subplots(5, 1, height_ratios=[1.6, 1.1, 1, 1, 1]))
         draw_forces(panels[0], run)
-        draw_angles(panels[1:], run)
+        draw_ratio(panels[1], run)
+        draw_angles(panels[2:], run)
         if around:
-            panels += draw_fields(parts[1], run, around)
-        for letter, panel in zip("abcdefg", panels):
+            panels += draw_fields(parts[1], run, around, run.frame(frame) if run.frame_names else None)
+        for letter, panel in zip("abcdefgh", panels):
             panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
 
 def title(run):
-    """Return in words what was driven how."""
+    """Return in words what was driven how, and by which seed: the parts of a title."""
     p = run.parameters
-    return (
-        rf"$\Phi$ = {run.summary.get('phi', p['phi']):.3f}, $\Omega$ = {p['spin_ratio']:g}, $V_0$ = {p['v0']:g} m/s,"
-        rf" $\mu$ = {p['mu']:g}, {p['width']:g} $d$ × {p['height']:g} $d$"
-    )
+    return [
+        rf"{body.name_of(run)} of {p['intruder_diameter']:g} $d$",
+        rf"$\Phi$ = {run.summary.get('phi', p['phi']):.3f}",
+        rf"$\Omega$ = {p['spin_ratio']:g}",
+        rf"$V_0$ = {p['v0']:g} m/s",
+        rf"$\mu$ = {p['mu']:g}",
+        rf"channel {p['width']:g} $d$ × {p['height']:g} $d$",
+        f"seed {p['seed']}",
+    ]
 
 
 def draw_forces(axes, run):
-    """Drag and lift against travel, with their means over the steady state, which is shaded."""
-    travel, forces = run.series["travel"], drag_and_lift(run.series, run.parameters["spin_ratio"])
+    """Drag and lift against travel, with their running means over the steady state, which is shaded."""
+    travel, steady = run.series["travel"], steady_rows(run)
+    forces = drag_and_lift(run.series, run.parameters["spin_ratio"])
     for name, force, colour in zip(("drag", "lift"), forces, (BLUE, VERMILLION)):
-        axes.plot(*coarse(travel, force), color=colour, linewidth=0.5, alpha=0.6)
-        draw_mean(axes, run.summary, name, colour)
+        axes.plot(*coarse(travel, force), color=colour, linewidth=0.4, alpha=0.4)
+        found = running_mean(force[steady])
+        draw_running(axes, travel[steady][found.ends - 1], found, colour=colour, label=f"{name} {{}} N")
     axes.axvspan(run.summary["steady_from"], travel[-1], color=GREY, alpha=0.3, linewidth=0)
     axes.set(xlabel=r"travel  [$d$]", ylabel="force, means over 1 $d$  [N]", xlim=(0, travel[-1]))
-    axes.legend(loc="upper right", framealpha=0.8, edgecolor="none", handlelength=1.4)
+    axes.legend()
+
+
+def steady_rows(run):
+    """Return which rows of the series the averages of the steady state rest on, (n,)."""
+    return run.series["travel"] >= run.summary["steady_from"]
+
+
+def draw_ratio(axes, run):
+    """L/D over the first part of the steady state, against how long that part is: is it converged?"""
+    steady = steady_rows(run)
+    drag, lift = (force[steady] for force in drag_and_lift(run.series, run.parameters["spin_ratio"]))
+    found = running_ratio(lift, drag)
+    ends = run.series["travel"][steady][found.ends - 1]
+    draw_convergence(axes, ends, found, colour=PURPLE, label="$L/D$ = {}")
+    axes.set(xlabel=r"averaged to a travel of  [$d$]", ylabel="$L/D$", xlim=(0, run.series["travel"][-1]))
+    axes.legend()
 
 
 def coarse(travel, force):
@@ -57,13 +81,6 @@ def coarse(travel, force):
     step = max(1, int(round(1 / travel[0]))) if len(travel) else 1
     rows = len(force) // step
     return tuple(column[: rows * step].reshape(rows, step).mean(axis=1) for column in (travel, force))
-
-
-def draw_mean(axes, summary, name, colour):
-    """Line of a mean over the steady state, named with its standard error."""
-    start = summary["steady_from"]
-    label = f"{name} {in_words(summary[name], summary[name + '_err'])} N"
-    axes.plot([start, start + summary["steady_travel"]], 2 * [summary[name]], color=colour, linewidth=1.5, label=label)
 
 
 def draw_angles(axes, run):
@@ -105,26 +122,19 @@ def grain_diameter(run):
     return float(run.parameters["v0"] * run.series["t"][-1] / run.series["travel"][-1])
 
 
-def draw_fields(figure, run, around):
-    """Speed with streamlines, area fraction and granular temperature in the body's frame (Fig. 7); return the panels."""
+def draw_fields(figure, run, around, bed):
+    """Speed with streamlines, area fraction and granular temperature in the body's frame (Fig. 7); return the panels.
+
+    The body is drawn as it is turned in the frame `bed`, at the end of the run without one.
+    """
     panels = list(figure.subplots(3, 1))
+    angle = body.turned(run, bed)
     warm = np.nanquantile(around.map("temperature"), 0.99)
     fields.draw_map(panels[0], around, "speed", vmin=0, vmax=1.5)
     fields.draw_streamlines(panels[0], around)
     fields.draw_map(panels[1], around, "area_fraction", vmin=0, vmax=0.9)
     fields.draw_map(panels[2], around, "temperature", vmin=0, vmax=warm)
     for panel in panels:
-        draw_body(panel, run)
+        body.draw(panel, run, angle, unit=grain_diameter(run), swept=True)
         panel.set(xlim=(around.x[0], around.x[-1]), ylim=(around.y[0], around.y[-1]))
     return panels
-
-
-def draw_body(axes, run):
-    """The body about the origin: its outline, or a circle; of a turning body the circle that it sweeps."""
-    body = run.group("intruder")
-    style, d = dict(facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3), grain_diameter(run)
-    beads, radius = body["beads"] / d, float(np.atleast_1d(body["bead_radius"])[0]) / d
-    if "outline" in body and run.parameters["spin_ratio"] == 0:
-        axes.add_patch(Polygon(body["outline"] / d, **style))
-    else:
-        axes.add_patch(Circle((0, 0), np.hypot(*beads.T).max() + radius, **style))

@@ -1,19 +1,19 @@
-"""The figures of a Magnus campaign, numbered as in the paper; each has its claims and verdicts below the axes."""
+"""The figures of a Magnus campaign, numbered as in the paper."""
 
 import numpy as np
 
 from .. import fields, figures
 from ..campaign.plots import COLOURS, canvas, draw_curves, draw_points, look, share_y
 from ..campaign.runs import at, curve, quantity
-from ..figures import BLACK, GREY, plt
+from ..figures import BLACK, GREY
 from .claims import by_phi, over_no_spin
 from .model import saturated_lift_to_drag
 from .runs import by_angle, fields_over_repeats
 
 
-def against_speed(campaign, rows, claims):
+def against_speed(campaign, rows):
     """Fig. 2: D and N against V0, no spin."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.4)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.4)
     draw_curves(left, rows, "phi", "v0", "drag", "Φ = {:g}")
     draw_curves(right, rows, "phi", "v0", "contacts", "Φ = {:g}")
     v0 = np.array([rows["v0"].min(), rows["v0"].max()])
@@ -41,10 +41,10 @@ def plain_ticks(axes, ticks):
     axes.set_xticks([], minor=True)
 
 
-def lift_against_spin(campaign, rows, claims):
+def lift_against_spin(campaign, rows):
     """Fig. 3: L/D against Ω, a panel for each Φ, a line for each V0."""
     groups = list(by_phi(rows))
-    figure, axes = canvas(1, len(groups), claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
+    figure, axes = canvas(1, len(groups), width=2 * figures.COLUMN_WIDTH, height=2.3)
     for panel, (phi, group) in zip(axes[0], groups):
         draw_curves(panel, group, "v0", "spin_ratio", "lift_to_drag", "V0 = {:g} m/s")
         panel.axhline(0, color=GREY, linewidth=0.6)
@@ -56,10 +56,10 @@ def lift_against_spin(campaign, rows, claims):
     return figure
 
 
-def drag_against_spin(campaign, rows, claims):
+def drag_against_spin(campaign, rows):
     """Fig. 5: D_Ω/D_0 and N_Ω/N_0 against Ω."""
     groups = list(by_phi(rows))
-    figure, axes = canvas(2, len(groups), claims, width=2 * figures.COLUMN_WIDTH, height=3.6)
+    figure, axes = canvas(2, len(groups), width=2 * figures.COLUMN_WIDTH, height=3.6)
     for column, (phi, group) in zip(axes.T, groups):
         for panel, name in zip(column, ("drag", "contacts")):
             for k, (v0, one_speed) in enumerate(group.groupby("v0", sort=True)):
@@ -75,9 +75,9 @@ def drag_against_spin(campaign, rows, claims):
     return figure
 
 
-def forces_by_angle(campaign, rows, claims):
+def forces_by_angle(campaign, rows):
     """Fig. 6: F_N/D_0, F_T/(μ F_N) and N_θ/N by angle."""
-    figure, ((left, middle, right),) = canvas(1, 3, claims, width=2 * figures.COLUMN_WIDTH, height=2.3)
+    figure, ((left, middle, right),) = canvas(1, 3, width=2 * figures.COLUMN_WIDTH, height=2.3)
     still = quantity(at(rows, spin_ratio=0), "drag").value
     for k, (spin, group) in enumerate(rows.groupby("spin_ratio", sort=True)):
         found = by_angle(campaign, group)
@@ -97,10 +97,10 @@ def forces_by_angle(campaign, rows, claims):
     return figure
 
 
-def around_intruder(campaign, rows, claims):
+def around_intruder(campaign, rows):
     """Fig. 7: speed with streamlines, area fraction and granular temperature around the body."""
     spins = sorted(rows["spin_ratio"].unique())
-    figure, axes = canvas(3, len(spins), claims, width=2 * figures.COLUMN_WIDTH, height=4.4)
+    figure, axes = canvas(3, len(spins), width=2 * figures.COLUMN_WIDTH, height=4.4)
     for column, spin in zip(axes.T, spins):
         group = at(rows, spin_ratio=spin)
         found = fields_over_repeats(campaign, group)
@@ -111,14 +111,13 @@ def around_intruder(campaign, rows, claims):
         fields.draw_map(column[2], found, "temperature", vmin=0, vmax=warm)
         column[0].set_title(f"Ω = {spin:g}")
         for panel in column:
-            radius = group["intruder_diameter"].iloc[0] / 2
-            panel.add_patch(plt.Circle((0, 0), radius, facecolor="white", edgecolor=BLACK, linewidth=0.8, zorder=3))
+            figures.draw_disk(panel, (0, 0), group["intruder_diameter"].iloc[0] / 2, spin=spin)
     return figure
 
 
-def lift_against_friction(campaign, rows, claims):
+def lift_against_friction(campaign, rows):
     """Fig. 8: L∞/D∞ against μ with Eq. 9 and, from the measured κ of each point, Eq. 15."""
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=2.8)
+    figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=2.8)
     largest = float(rows["mu"].max())
     axes.plot([0, largest], [0, largest], "--", color=BLACK, linewidth=0.8, label="Eq. 9: L$_∞$/D$_∞$ = μ")
     axes.plot([], [], color=GREY, linewidth=0.8, label="Eq. 15, measured κ")

@@ -81,9 +81,9 @@ def regular_claims(_campaign, rows):
     return claims
 
 
-def draw_runs(campaign, rows, claims, *, chaotic):
+def draw_runs(campaign, rows, *, chaotic):
     """Draw the distances of all runs against time."""
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.6 * figures.COLUMN_WIDTH, height=3.0)
+    figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=3.0)
     for number, path in enumerate(rows["run"]):
         run = Run(campaign.folder / "runs" / path)
         for name, colour in COLOURS.items():
@@ -97,9 +97,9 @@ def draw_runs(campaign, rows, claims, *, chaotic):
     return figure
 
 
-def draw_averages(campaign, rows, claims):
+def draw_averages(campaign, rows):
     """Draw each average over that of 64 bits, less 1, with error bars."""
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.4 * figures.COLUMN_WIDTH, height=2.4)
+    figure, ((axes,),) = canvas(1, 1, width=1.4 * figures.COLUMN_WIDTH, height=2.4)
     for column, name in enumerate(("double", "single")):
         for k, key in enumerate(AVERAGED):
             ratio = over_64_bits(rows, key, name)

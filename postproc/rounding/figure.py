@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, STYLE, VERMILLION, plt, save
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, ORANGE, PURPLE, STYLE, VERMILLION, plt, save, set_title
 from ..reader import Run
 from .averages import AVERAGED
 from .distances import PREDICTED
@@ -26,6 +26,8 @@ def draw(path, frame=-1):
             1 + averaged * 2, 1, figsize=(COLUMN_WIDTH, 2.8 + 3.6 * averaged), layout="constrained"
         )
         axes = np.atleast_1d(axes)
+        p = run.parameters
+        set_title(figure, [f"{p['scene']} scene", f"{p['grains']} disks", f"seed {p['seed']}"])
         draw_distances(axes[0], run)
         if averaged:
             draw_averages(axes[1], run)

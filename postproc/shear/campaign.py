@@ -22,9 +22,9 @@ def fraction_claims(_campaign, rows):
     return [claim(slow, text, "the dilatancy law of dense flows", "< 0", slope, below(0))]
 
 
-def draw_fraction(campaign, rows, claims):
+def draw_fraction(campaign, rows):
     """phi(I) and contacts of a grain."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.4)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.4)
     inertial, phi = curve(rows, "inertial_number", "phi")
     slow_i, slow_phi = curve(up_to(rows, LAST_STRAIGHT), "inertial_number", "phi")
     first, slope = straight_line(slow_i, slow_phi)
@@ -50,9 +50,9 @@ def stiffness_claims(_campaign, rows):
     return claims
 
 
-def draw_stiffness(campaign, rows, claims):
+def draw_stiffness(campaign, rows):
     """mu and phi against k_n/P."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.2)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.2)
     for panel, name, label in ((left, "stress_ratio", "μ = τ/p"), (right, "phi", "area fraction φ")):
         pressure, points = curve(rows, "pressure", name)
         stiffness = float(rows["stiffness"].iloc[0]) * DISK

@@ -52,9 +52,9 @@ def line_of(rows, name):
     return straight_line(BY_MASS * inertial, points)
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """mu and phi of both kinds of disks against their I, with their lines."""
-    figure, ((left, right),) = canvas(1, 2, claims, width=2 * figures.COLUMN_WIDTH, height=2.5)
+    figure, ((left, right),) = canvas(1, 2, width=2 * figures.COLUMN_WIDTH, height=2.5)
     kinds = [(rows, "μ_p 0.4, e 0.1"), (campaign.sweep("rheology"), "μ_p 0.5, e 0.92")]
     line = np.linspace(0, 0.25, 50)
     for axes, name, law, label in (

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save
-from ..measured import in_words
+from ...base.numbers import with_error
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save, set_title
 from ..reader import Run
+from ..running import draw_convergence, draw_running, running_mean, running_ratio
 
 
 def draw(path, frame=-1):
@@ -12,33 +13,35 @@ def draw(path, frame=-1):
     run = Run(path)
     series, summary = run.series, run.summary
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(4, 1, figsize=(COLUMN_WIDTH, 6.0), layout="constrained")
-        figure.suptitle(title(run), fontsize=8)
-        strain = series["strain"]
-        pressed = np.where(series["mean_pressure"] > 0, series["mean_pressure"], np.nan)
-        ratio = series["shear_stress"] / pressed
-        for panel, values, name, label, colour in (
-            (axes[0], ratio, "stress_ratio", r"$\mu = \tau/p$", BLUE),
-            (axes[1], series["mean_pressure"], "mean_pressure", r"$p$  [$\rho g d$]", VERMILLION),
-            (axes[2], series["phi"], "phi", r"$\phi$", GREEN),
+        figure, axes = plt.subplots(5, 1, figsize=(COLUMN_WIDTH, 7.4), layout="constrained")
+        set_title(figure, title(run))
+        strain, tau, p = series["strain"], series["shear_stress"], series["mean_pressure"]
+        steady = strain >= summary["steady_from_strain"]
+        friction = running_ratio(tau[steady], p[steady])
+        ratio = tau / np.where(p > 0, p, np.nan)
+        for panel, values, found, symbol, unit, colour in (
+            (axes[0], ratio, friction, r"$\mu = \tau/p$", "", BLUE),
+            (axes[2], p, running_mean(p[steady]), "$p$", r"  [$\rho g d$]", VERMILLION),
+            (axes[3], series["phi"], running_mean(series["phi"][steady]), r"$\phi$", "", GREEN),
         ):
-            panel.plot(strain, values, color=colour, linewidth=0.6)
-            panel.axhline(summary[name], color=BLACK, linewidth=0.7)
+            panel.plot(strain, values, color=colour, linewidth=0.4, alpha=0.5)
+            draw_running(panel, strain[steady][found.ends - 1], found, colour=colour, label=f"{symbol} = {{}}")
             panel.axvspan(summary["steady_from_strain"], strain[-1], color=GREY, alpha=0.3, linewidth=0)
-            panel.set(xlabel="strain", ylabel=label, xlim=(0, strain[-1]))
-        draw_profile(axes[3], run)
-        for letter, panel in zip("abcd", axes):
+            panel.set(xlabel="strain", ylabel=symbol + unit, xlim=(0, strain[-1]))
+            panel.legend()
+        draw_convergence(axes[1], strain[steady][friction.ends - 1], friction, colour=BLUE)
+        axes[1].set(xlabel="averaged to a strain of", ylabel=r"mean $\mu$", xlim=(0, strain[-1]))
+        draw_profile(axes[4], run)
+        for letter, panel in zip("abcde", axes):
             panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
 
 def title(run):
-    """Return in words what flowed how."""
-    found = run.summary
-    return (
-        rf"$I$ = {found['flow_inertial_number']:.3g}, $\mu$ = {in_words(found['stress_ratio'], found['stress_ratio_err'])},"
-        rf" $\phi$ = {found['phi']:.4f}, {run.parameters['grains']} disks"
-    )
+    """Return in words what flowed how, and by which seed: the parts of a title."""
+    p = run.parameters
+    inertial = with_error(*(run.summary[f"flow_inertial_number{end}"] for end in ("", "_err")))
+    return [f"{p['grains']} disks", f"$I$ = {inertial}", rf"friction $\mu$ = {p['friction']:g}", f"seed {p['seed']}"]
 
 
 def draw_profile(axes, run):

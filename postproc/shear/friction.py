@@ -54,11 +54,11 @@ def held_pressure(rows):
     )
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """mu(I) with our fits and the drum paper's law; the constants of the dense flow go to the campaign's summary.json."""
     law, of_all = law_of(up_to(rows, DENSEST_GAS)), law_of(rows)
     (campaign.folder / SUMMARY).write_text(json.dumps(law.as_summary(), indent=1) + "\n")
-    figure, ((axes,),) = canvas(1, 1, claims, width=1.4 * figures.COLUMN_WIDTH, height=2.6)
+    figure, ((axes,),) = canvas(1, 1, width=1.4 * figures.COLUMN_WIDTH, height=2.6)
     inertial, points = points_of(rows, "stress_ratio")
     draw_points(axes, inertial, points, **{**look(0, "shear runs"), "linestyle": "none"})
     draw_law(axes, inertial, law, f"fit up to {DENSEST_GAS:g}", color=BLACK)
@@ -77,6 +77,6 @@ def reach(inertial):
 
 def draw_law(axes, inertial, law, words, **style):
     """Draw a `FrictionLaw` with its constants and chi^2 in the legend."""
-    constants = f"{law.mu_s.value:.3f}, {law.mu_2.value:.3f}, {law.i_0.value:.3f}, χ²/f = {law.chi_squared:.1f}"
+    constants = f"μ_s {law.mu_s}, μ_2 {law.mu_2},\nI_0 {law.i_0}, χ²/f = {law.chi_squared:.1f}"
     line = reach(inertial)
-    axes.plot(line, law(line), linewidth=0.8, label=f"{words}: {constants}", **style)
+    axes.plot(line, law(line), linewidth=0.8, label=f"{words}:\n{constants}", **style)

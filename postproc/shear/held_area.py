@@ -88,9 +88,9 @@ def through(place, x, y):
     return Measured(float("nan"), float("nan"))
 
 
-def draw(campaign, rows, claims):
+def draw(campaign, rows):
     """mu(I) at constant phi and at constant pressure with the paper's law; k_n/p of both; mu and phi of soft grains at one I."""
-    figure, ((left, middle, right),) = canvas(1, 3, claims, width=2.6 * figures.COLUMN_WIDTH, height=2.5)
+    figure, ((left, middle, right),) = canvas(1, 3, width=2.6 * figures.COLUMN_WIDTH, height=2.5)
     inertial, points = points_of(rows, "stress_ratio", RATE)
     of_pressure = campaign.sweep("rheology")
     draw_points(left, inertial, points, **{**look(1, "φ = 0.825"), "linestyle": "none"})

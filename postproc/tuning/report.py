@@ -7,6 +7,7 @@ from matplotlib.ticker import LogLocator, StrMethodFormatter
 
 from ...accuracy.effects import CONFIDENCE
 from ...accuracy.words import in_words, shown
+from ...base.numbers import with_error
 from ...base.whole_files import write_text
 from .. import figures
 from ..campaign.plots import COLOURS, MARKERS
@@ -187,7 +188,7 @@ def sentence(search, row, setting):
     """Return one setting in plain words: what it changes, what it costs, and what the search says of it."""
     effect = search.trials.effect(setting, search.observable)
     return (
-        f"{row['setting']} changes {search.observable} by {100 * effect.bias:.2g} ± {100 * effect.interval(CONFIDENCE):.2g} %"
+        f"{row['setting']} changes {search.observable} by {with_error(100 * effect.bias, 100 * effect.interval(CONFIDENCE))} %"
         f" and costs {share(row['cost_share'])} of the reference: {row['verdict']} ({effect.runs} runs)"
     )
 
@@ -214,4 +215,4 @@ def cell(row, name):
     bias, half, bound = (row.get(f"{name}_{part}_percent", math.nan) for part in ("bias", "interval", "bound"))
     if not math.isfinite(bias):
         return "-"
-    return f"{bias:.2g} ± {half:.2g} ({bound:.2g})" if math.isfinite(half) else f"{bias:.2g}"
+    return f"{with_error(bias, half)} ({bound:.2g})" if math.isfinite(half) else f"{bias:.2g}"

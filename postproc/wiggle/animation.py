@@ -1,9 +1,9 @@
 """A film of a wiggle run (MP4): all its frames of the bed, with one view and one scale of colours."""
 
 import matplotlib.pyplot as plt
-from matplotlib.cm import ScalarMappable
 
 from .. import films
+from ..figures import colour_bar, set_title
 from ..reader import GRAIN
 from . import figure as drawing
 
@@ -22,11 +22,11 @@ def prepared(run):
     norm = drawing.speed_scale([bed.speed[bed.role == GRAIN] for bed in beds])
     box = drawing.view(run, beds[len(beds) // 2])
     figure, axes = plt.subplots(figsize=films.picture_size(*box[1]), layout="constrained")
-    figure.suptitle(drawing.title(run))
-    figure.colorbar(ScalarMappable(norm, "YlGnBu"), ax=axes, pad=0.01, extend="max", label=r"speed  [$\sqrt{gd}$]")
+    set_title(figure, drawing.title(run))
 
     def draw(bed):
         axes.clear()
-        drawing.draw_bed(axes, run, bed, box, norm)
+        circles = drawing.draw_bed(axes, run, bed, box, norm)
+        colour_bar(axes, circles, r"speed  [$\sqrt{gd}$]", extend="max")
 
     return figure, draw

@@ -1,16 +1,18 @@
-"""The figure of the wiggle study: height over time, rise rate by phase, and the bed with speeds and force chains."""
+"""The figure of the wiggle study: height over time, rise rate as it converges and by phase, the bed, fields if measured."""
 
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import PowerNorm
-from matplotlib.patches import Polygon
 
+from ...base.numbers import with_error
 from ..drift import drift, phase_rates
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, PURPLE, STYLE, VERMILLION, draw_chains, draw_grains, save
-from ..measured import in_words
+from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, PURPLE, STYLE, VERMILLION, colour_bar, draw_body, draw_chains
+from ..figures import draw_disk, draw_grains, save, set_title
 from ..reader import BASE, GRAIN, INTRUDER, Run
+from ..running import draw_convergence, running_mean
+from . import around
 
 VIEW = np.array([80.0, 60.0])  # d, width and height; of a larger bed the part around the intruder is shown
 NAMES = {"disk": "disk", "square": "square", "tall": "tall rectangle", "wide": "wide rectangle", "triangle": "triangle"}
@@ -24,22 +26,22 @@ def draw(path, frame=-1):
     """Draw figure.png and figure.pdf of the run folder `path` from its data alone; `frame` chooses the picture."""
     run = Run(path)
     with plt.rc_context(STYLE):
-        bed = run.frame(frame) if run.frame_names else None
+        bed, seen = run.frame(frame) if run.frame_names else None, around.fields_of(run)
         box = view(run, bed) if bed else None
-        heights = [1.7, 1.2] + ([0.5 + 2.55 * box[1, 1] / box[1, 0]] if bed else [])
-        size = (COLUMN_WIDTH, 0.2 + sum(heights))
-        figure, axes = plt.subplots(
-            len(heights), 1, figsize=size, height_ratios=heights, squeeze=False, layout="constrained"
-        )
-        figure.suptitle(title(run), fontsize=8)
-        draw_height(axes[0, 0], run)
-        draw_phases(axes[1, 0], run)
+        heights = [1.7, 1.1, 1.2] + ([0.6 + 2.55 * box[1, 1] / box[1, 0]] if bed else [])
+        columns = [COLUMN_WIDTH] + ([around.WIDTH] if seen else [])
+        figure = plt.figure(figsize=(sum(columns), 0.2 + sum(heights)), layout="constrained")
+        set_title(figure, title(run))
+        parts = np.atleast_1d(figure.subfigures(1, len(columns), width_ratios=columns))
+        panels = list(parts[0].subplots(len(heights), 1, height_ratios=heights))
+        draw_height(panels[0], run)
+        draw_rates(panels[1], run)
+        draw_phases(panels[2], run)
         if bed:
-            circles = draw_bed(axes[2, 0], run, bed, box)
-            bar = figure.colorbar(circles, ax=axes[2, 0], pad=0.02, fraction=0.05, aspect=25, extend="max")
-            bar.set_label(r"speed  [$\sqrt{gd}$]")
-            bar.ax.minorticks_off()
-        for letter, panel in zip("abc", axes[:, 0]):
+            colour_bar(panels[3], draw_bed(panels[3], run, bed, box), r"speed  [$\sqrt{gd}$]", extend="max")
+        if seen:
+            panels.append(around.draw(parts[1], run, seen))
+        for letter, panel in zip("abcde", panels):
             panel.set_title(f"({letter})", loc="left")
         save(figure, path)
 
@@ -55,8 +57,37 @@ def draw_height(axes, run):
         draw_rate(axes, found)
     axes.margins(x=0)
     axes.set(xlabel=r"$t$  [$\sqrt{d/g}$]", ylabel=r"$y - y_0$  [$d$]")
-    axes.legend(loc="best", framealpha=0.8, edgecolor="none", handlelength=1.4, borderaxespad=0.3)
+    axes.legend()
     draw_period(axes, period)
+
+
+def draw_rates(axes, run):
+    """The rise rate over the first cycles that count, against how many they are: is it converged?"""
+    period = float(run.parameters["period"])
+    found = drift(run.series["t"], run.series["y"], period)
+    steps = np.diff(found.cycle_y[averaged(found)]) / period
+    axes.set(xlabel=r"averaged to $t$  [$\sqrt{d/g}$]", ylabel=r"mean $V_y$  [$\sqrt{gd}$]")
+    if not np.isfinite(found.rate):
+        say_too_short(axes)
+        return
+    rates = running_mean(steps, fewest=2)
+    ends = found.start + period * (1 + rates.ends)
+    draw_convergence(
+        axes, ends, rates, colour=VERMILLION, marker="." if len(steps) < 20 else None, label=r"$V_y$ = {} $\sqrt{gd}$"
+    )
+    axes.legend()
+
+
+def averaged(found):
+    """Return which cycles a `Drift` averages, (cycles,)."""
+    return (found.cycle_t >= found.start) & (found.cycle_t <= found.end)
+
+
+def say_too_short(axes):
+    """Say in a panel that the run holds too few cycles for a mean."""
+    words = "fewer than two whole cycles\nafter the first tenth of the run"
+    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center")
+    axes.set_yticks([])
 
 
 def draw_phases(axes, run):
@@ -67,9 +98,7 @@ def draw_phases(axes, run):
     if np.isfinite(rates).any():
         axes.errorbar(phases, rates, np.nan_to_num(errors), fmt="o-", color=BLUE, markersize=2, elinewidth=0.6)
     else:
-        words = "fewer than two whole cycles\nafter the first tenth of the run"
-        axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center")
-        axes.set_yticks([])
+        say_too_short(axes)
     axes.axhline(0, color=GREY, linewidth=0.5, zorder=0)
     for turn in TURNS[run.parameters.get("drive", "displacement")] if np.isfinite(rates).any() else ():
         axes.axvline(turn, color=GREY, linewidth=0.5, linestyle=(0, (4, 2)), zorder=0)
@@ -77,19 +106,23 @@ def draw_phases(axes, run):
 
 
 def title(run):
-    """Return in words what shape is driven how."""
+    """Return in words what shape is driven how, and by which seed: the parts of a title."""
     p = run.parameters
     shape = str(p.get("shape", "intruder"))
-    shape = NAMES.get(shape, Path(shape).stem).replace("$", r"\$")
-    return (
-        rf"{shape}, $A$ = {p['amplitude']:g} $d$, $T$ = {p['period']:g} $\sqrt{{d/g}}$, $\mu$ = {p.get('mu', np.nan):g}"
-    )
+    unit = "$d$" if p.get("drive", "displacement") == "displacement" else r"$\sqrt{gd}$, of the velocity"
+    return [
+        NAMES.get(shape, Path(shape).stem).replace("$", r"\$"),
+        rf"$A$ = {p['amplitude']:g} {unit}",
+        rf"$T$ = {p['period']:g} $\sqrt{{d/g}}$",
+        rf"$\mu$ = {p['mu']:g}" if "mu" in p else "",
+        f"seed {p['seed']}" if "seed" in p else "",
+    ]
 
 
 def draw_rate(axes, found):
     """Line between the middles of the average's first and last cycle, whose slope is the rise rate, named with its error."""
-    inside = (found.cycle_t >= found.start) & (found.cycle_t <= found.end)
-    label = rf"$V_y$ = {in_words(found.rate, found.error).replace('-', '−')} $\sqrt{{gd}}$"
+    inside = averaged(found)
+    label = rf"$V_y$ = {with_error(found.rate, found.error)} $\sqrt{{gd}}$"
     middles, means = (column[inside][[0, -1]] for column in (found.cycle_t, found.cycle_y))
     axes.plot(middles, means, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
 
@@ -187,11 +220,12 @@ def body_now(run, bed, left, period_x):
 
 
 def draw_intruder(axes, intruder, centre):
-    """The intruder as a white body with its beads and a bold outline; a cross where its shape was not stored."""
+    """The intruder as a white body with its beads and a bold outline, a disk as one; a cross where its shape was not stored."""
     if "beads" in intruder:
         beads, radius = intruder["beads"], float(np.atleast_1d(intruder["bead_radius"])[0])
-        if "outline" in intruder:
-            body = Polygon(intruder["outline"], facecolor="white", edgecolor=BLACK, linewidth=1.0, zorder=3)
-            axes.add_patch(body)
-        draw_grains(axes, beads[:, 0], beads[:, 1], np.full(len(beads), radius), colour=BLACK, zorder=4)
+        if len(beads) == 1:
+            draw_disk(axes, beads[0], radius)
+        else:
+            draw_body(axes, intruder.get("outline", beads))
+            draw_grains(axes, beads[:, 0], beads[:, 1], np.full(len(beads), radius), colour=BLACK, zorder=4)
     axes.plot(*centre, "+", zorder=5, color=BLACK, markersize=4, markeredgewidth=0.8)

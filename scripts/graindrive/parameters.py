@@ -93,6 +93,7 @@ class StudyParameters(BaseModel):
     export: str = quantity(
         "", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False
     )
+    film: bool = quantity(False, "-", "also film the run's frames, as animation.mp4; frames=200 or so", identity=False)
 
     class Config:
         extra = "forbid"

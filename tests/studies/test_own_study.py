@@ -52,8 +52,8 @@ def claims(campaign, rows):
     return [claim_on({"damping": ("c", "/s")}, rows, "energy decays as exp(-c t)", "a textbook", "0.67",
                      Measured(left, 0.0), Agrees(0.67, 0.05, 0.01))]
 
-def draw(campaign, rows, found):
-    figure, ((axes,),) = canvas(1, 1, found, width=3, height=2)
+def draw(campaign, rows):
+    figure, ((axes,),) = canvas(1, 1, width=3, height=2)
     draw_points(axes, *curve(rows, "damping", "energy_left"))
     return figure
 

@@ -64,8 +64,8 @@ def test_claims_name_value_error_and_cost(campaign):
 
 def test_the_figure_is_drawn_with_and_without_settings(campaign):
     rows = rows_of(campaign)
-    figure = levers.draw(campaign, rows, levers.lever_claims(campaign, rows))
+    figure = levers.draw(campaign, rows)
     left, middle, _ = figure.axes
     assert len(left.texts) == 4 and {text.get_text() for text in middle.get_legend().get_texts()} == {"dt", "cells"}
     assert np.array_equal(np.sort([float(t.get_text()) for t in left.texts]), [0.02, 0.08, 40, 75])
-    assert levers.draw(campaign, rows[:1], []).axes[1].get_legend() is None
+    assert levers.draw(campaign, rows[:1]).axes[1].get_legend() is None

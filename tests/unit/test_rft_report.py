@@ -117,14 +117,14 @@ def test_too_few_plates_make_no_claims_and_an_empty_figure():
     campaign = MadeUp("published")
     few = campaign.sweep("plates").iloc[:2]
     assert rft_report.rft_claims(campaign, few) == []
-    figure = rft_report.draw(campaign, few, [])
+    figure = rft_report.draw(campaign, few)
     assert not any(axes.lines for axes in figure.axes)
     plt.close(figure)
 
 
 def test_the_figure_shows_the_lift_by_rft_at_the_depth_of_a_run():
     campaign = MadeUp("published")
-    figure = rft_report.draw(campaign, campaign.sweep("plates"), [])
+    figure = rft_report.draw(campaign, campaign.sweep("plates"))
     lift = figure.axes[3]
     line = next(line for line in lift.lines if line.get_label() == "RFT, published form")
     deepest = campaign.sweep("cylinder").iloc[-1]

@@ -12,7 +12,6 @@ from graindrive.postproc.measured import (
     Limit,
     Measured,
     birge_ratio,
-    in_words,
     mean_of,
     polynomial_through,
     power_of,
@@ -111,28 +110,6 @@ def test_a_claim_tells_number_and_verdict_and_claims_are_counted():
     assert str(claims[0]) == "x is 1: 1.000 ± 0.010, reproduced"
     assert claims[2].number == "no data"
     assert tally(claims) == "1 reproduced, 1 not reproduced, 1 not decided"
-
-
-# ---- numbers with errors ---------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "value, error, words",
-    [
-        (10.87, 3.96, "10.9 ± 4.0"),
-        (0.01234, 0.0005, "0.01234 ± 0.00050"),
-        (-3.2, 0.0996, "-3.20 ± 0.10"),  # 0.0996 has 0.10 as its two digits
-        (1234.0, 123.0, "1230 ± 120"),
-        (3.1e-7, 1.23e-8, "(3.10 ± 0.12)e-07"),
-        (5.5e8, 1e7, "(5.50 ± 0.10)e+08"),
-        (0.0, 0.02, "0.000 ± 0.020"),
-        (1.5, 0.0, "1.5"),
-        (1.5, math.nan, "1.5 (error unknown)"),
-        (math.nan, math.inf, "nan"),
-    ],
-)
-def test_value_and_error_are_rounded_at_the_same_digit(value, error, words):
-    assert in_words(value, error) == str(Measured(value, error)) == words
 
 
 def test_ratio_and_difference_add_errors_in_squares():

@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 
 from ..base.errors import UsageError
+from ..base.numbers import with_error
 from . import book as books
 from .effects import CONFIDENCE, NOTHING
 from .words import in_words
@@ -144,7 +145,7 @@ def reason_of(asked, book, setting, cost):
     effect = setting.effects[asked.observable]
     levers = in_words(sorted(setting.levers.items()))
     return (
-        f"{levers}: {asked.observable} off by {100 * effect.bias:.2g} +- {100 * effect.error:.1g} %, mean of {effect.runs} runs"
+        f"{levers}: {asked.observable} off by {with_error(100 * effect.bias, 100 * effect.error)} %, mean of {effect.runs} runs"
         f" ({book.file}), one run by less than {100 * effect.bound(CONFIDENCE):.2g} % at {100 * CONFIDENCE:.0f} % confidence;"
         f" about {cost:.0f} s of one core"
     )

@@ -25,6 +25,7 @@ from ..commands import command_line
 from ..scenes import scene
 from .. import study
 from ..base.errors import UsageError
+from ..base.numbers import with_error
 from ..base.whole_files import write_text
 from ..postproc.lift import forces
 from ..postproc.measured import Measured, mean_of
@@ -109,14 +110,14 @@ def apart(own, other):
 
 def line(seed, name, own, other):
     """Return a row of the table as text."""
-    errors = apart(own, other)
-    return f"{seed:>6} {name:>5} {own.value:10.4g} ± {own.error:8.2g} {other.value:10.4g} ± {other.error:8.2g} {errors:7.2f}"
+    numbers = " ".join(f"{with_error(force.value, force.error):>22}" for force in (own, other))
+    return f"{seed:>6} {name:>5} {numbers} {apart(own, other):7.2f}"
 
 
 def compare(lift, parameters, seeds, folder, keys):
     """Run both codes for each seed; print a line for each force, and leave forces.json and report.md after each seed."""
     rows = []
-    print("  seed force     GrainLoop [N]         LIGGGHTS [N]      apart [combined errors]")
+    print("  seed force          GrainLoop [N]           LIGGGHTS [N]  apart [combined errors]")
     for seed in seeds:
         place = Path(folder) / f"seed-{seed}"
         place.mkdir(parents=True, exist_ok=True)

@@ -17,6 +17,7 @@ from ..beds.cache import cache_folder
 from .command_line import parameters_or_exit
 from ..base.errors import EngineError, Interrupted, UsageError, is_full, one_line
 from ..runs.run_folder import RunFolder
+from ..runs import run_place
 from ..runs.run_place import AlreadyComplete
 
 # Before anything imports matplotlib: its font list belongs in our cache, not in the home.
@@ -56,6 +57,33 @@ def end(code):
 
 
 def carry_out(study, p):
+    """Run the `Study` in its run folder, with stop signals handled, and film it if asked; a film that cannot be is refused first."""
+    if p.film:
+        films().require_possible(study, p)
+    try:
+        made(study, p)
+    except AlreadyComplete:
+        filmed(study, p)
+        raise
+    filmed(study, p)
+
+
+def filmed(study, p):
+    """Film the finished run if that is asked for and no film is there."""
+    out = run_place.place_of(p.out)
+    if p.film and not (out / films().NAME).exists():
+        print(f"{study.name}: filming {films().NAME}", file=sys.stderr)
+        study.film(out)
+
+
+def films():
+    """Return the module of films; matplotlib, which it needs, takes a second that other runs save."""
+    from ..postproc import films as module
+
+    return module
+
+
+def made(study, p):
     """Run the `Study` in its run folder, with stop signals handled."""
     units = {observable.name: observable.unit for observable in study.observables}
     kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
