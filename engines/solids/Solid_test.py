@@ -450,7 +450,7 @@ SORTED_AGAIN = """
 import sys
 import numpy as np
 from graindrive import engines
-from graindrive.bodies import surfaces
+from graindrive.solids import surfaces
 from yade import O, utils
 from yade.wrapper import Bo1_Sphere_Aabb, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom
 from yade.wrapper import InsertionSortCollider, InteractionLoop, NewtonIntegrator

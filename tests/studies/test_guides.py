@@ -3,6 +3,7 @@
 import glob
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -39,6 +40,15 @@ def test_a_shape_of_ones_own_in_a_plane_and_in_space(tmp_path):
     assert wiggle.state == lift.state == "complete" and wiggle.parameters["shape"] == "arrow.csv"
     assert lift.summary["body_height"] == pytest.approx(3, abs=0.05)  # sampled on a grid
     assert (tmp_path / "arrow-run/figure.png").exists() and (tmp_path / "rod-run/figure.png").exists()
+
+
+def test_solids_in_scripts_of_yade(tmp_path):
+    """The drum's spheres weigh 60 x 1.3 g and stand at most 0.1 m beside its axis: their torque stays below 0.08 N m."""
+    said = follow("solid.md", tmp_path)
+    force, contacts = re.search(r"on the cylinder (-[0-9.]+) N by (\d+) contacts", said).groups()
+    assert -0.1 < float(force) < -0.003 and int(contacts) > 100  # the spheres above the cylinder weigh 0.1 N
+    contacts, torque = re.search(r"(\d+) contacts; torque on the drum (\S+) N m", said).groups()
+    assert int(contacts) > 5 and 0 < abs(float(torque)) < 0.08
 
 
 @needs_snakemake

@@ -69,7 +69,7 @@ def test_every_observable_is_drawn_against_every_key_of_each_sweep(campaign):
     assert {path.stem for path in (folder / "figures").glob("*.png")} == drawn
     assert all(f"(figures/{name}.png)" in report for name in drawn)
     assert report.count("against `mu`, `v0`.") == 2 and report.count("against `phi`.") == 2
-    assert ["0.135", "1", "0.14 ± 0.50", "nan (error unknown)"] in lines(report)  # sweep b has no lift
+    assert ["0.135", "1", "0.14 ± 0.50", "no data"] in lines(report)  # sweep b has no lift
 
 
 def figure_of(folder, observable=DRAG):

@@ -9,7 +9,17 @@ from . import pages
 
 TOP = Path(__file__).resolve().parents[3]
 PACKAGE = {"graindrive": TOP / "scripts" / "graindrive", "graindrive.postproc": TOP / "postproc"}
-READMES = ("README.md", "engines/README.md", "scripts/README.md", "postproc/README.md", "studies/RESULTS.md")
+READMES = (
+    "README.md",
+    "studies/README.md",
+    "scripts/campaigns.md",
+    "scripts/accuracy.md",
+    "engines/loop/README.md",
+    "engines/README.md",
+    "scripts/README.md",
+    "postproc/README.md",
+    "studies/RESULTS.md",
+)
 LINK = re.compile(r"!?\[[^\]]*\]\((?!\w+:)([^)#\s]+)")
 PROGRAMS = ("__main__", "rounding_script", "conf")  # files that do something, or need Sphinx, when they are imported
 

@@ -1,6 +1,6 @@
 """Solids by distance and normal, for YADE bodies of any shape.
 
-    from graindrive.bodies import surfaces
+    from graindrive.solids import surfaces
     drum = ~surfaces.cylinder((0, 0, 0), axis=(0, 1, 0), radius=0.2)     # all but a cylinder
     blade = surfaces.swept_outline([(-0.1, -0.01), (0.1, -0.01), (0.1, 0.01), (-0.1, 0.01)], low=0, high=0.3)
     O.bodies.append(surfaces.body(drum | blade))
