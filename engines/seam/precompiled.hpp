@@ -1,7 +1,6 @@
 /// The headers that every source of the Python module reads: compiled once, they save three quarters of the time that a source takes.
 #pragma once
 #include <boost/python.hpp>
-#include <boost/python/numpy.hpp>
 #include <boost/python/raw_function.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>

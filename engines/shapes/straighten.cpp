@@ -2,12 +2,9 @@
 #include "engines/shapes/straighten.hpp"
 
 #include <algorithm>
-#include <boost/geometry/algorithms/simplify.hpp>
-#include <boost/geometry/core/cs.hpp>
+#include <boost/geometry.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/strategies/cartesian/distance_projected_point.hpp>
-#include <boost/geometry/strategies/cartesian/distance_pythagoras.hpp>
 
 namespace graindrive::shapes {
 
