@@ -48,7 +48,5 @@ class PlannedFigure:
         """Draw the figure into the campaign's folder `figures`; return its `Section`."""
         rows = campaign.sweep(self.sweep)
         claims = tuple(self.claims(campaign, rows))
-        figures.save_as(
-            self.draw(campaign, rows), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}"
-        )
+        figures.save_as(self.draw(campaign, rows), campaign.folder / "figures", f"{campaign.plan['name']}-{self.name}")
         return Section(self.title, self.name, self.caption, claims)

@@ -5,7 +5,19 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ...base.numbers import with_error
-from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, colour_bar, draw_grains, save, set_title
+from ..figures import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    GREEN,
+    GREY,
+    STYLE,
+    VERMILLION,
+    colour_bar,
+    draw_grains,
+    save,
+    set_title,
+)
 from ..measured import Measured
 from ..reader import BEAD, Run
 from ..running import draw_running, running

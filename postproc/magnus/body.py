@@ -41,5 +41,7 @@ def draw(axes, run, angle, *, centre=(0.0, 0.0), unit, swept=False):
     figures.draw_body(axes, corners)
     reach = np.hypot(*beads.T).max() + radius
     if spin and swept:
-        axes.add_patch(Circle(centre, reach, fill=False, edgecolor=GREY, linewidth=0.6, linestyle=(0, (3, 2)), zorder=3))
+        axes.add_patch(
+            Circle(centre, reach, fill=False, edgecolor=GREY, linewidth=0.6, linestyle=(0, (3, 2)), zorder=3)
+        )
     figures.draw_spin(axes, centre, 0.3 * reach, spin)

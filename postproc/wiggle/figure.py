@@ -72,7 +72,9 @@ def draw_rates(axes, run):
         return
     rates = running_mean(steps, fewest=2)
     ends = found.start + period * (1 + rates.ends)
-    draw_convergence(axes, ends, rates, colour=VERMILLION, marker="." if len(steps) < 20 else None, label=r"$V_y$ = {} $\sqrt{gd}$")
+    draw_convergence(
+        axes, ends, rates, colour=VERMILLION, marker="." if len(steps) < 20 else None, label=r"$V_y$ = {} $\sqrt{gd}$"
+    )
     axes.legend()
 
 

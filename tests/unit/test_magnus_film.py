@@ -38,7 +38,9 @@ def make(out, *, shape="triangle", times=(0.0, 0.02, 0.04)):
     with RunFolder(Keys(out=str(out), shape=shape), study="magnus", constants=constants) as folder:
         beads = np.zeros((1, 2)) if shape == "disk" else CORNERS
         outline = {} if shape == "disk" else dict(outline=(CORNERS, "m"))
-        folder.write("intruder", dict(beads=(beads, "m"), bead_radius=(2 * D if shape == "disk" else 0.2 * D, "m"), **outline))
+        folder.write(
+            "intruder", dict(beads=(beads, "m"), bead_radius=(2 * D if shape == "disk" else 0.2 * D, "m"), **outline)
+        )
         folder.declare_series(t="s", travel="d")
         folder.append(t=np.array(times), travel=V0 * np.array(times) / D)
         for t in times:
@@ -55,7 +57,9 @@ def picture(rng, shape, beads, t):
     angle, centre = SPIN * t, np.array([WIDTH * D / 2 + V0 * t, 0.0])
     cos, sin = np.cos(angle), np.sin(angle)
     places = beads @ np.array([[cos, sin], [-sin, cos]]) + centre
-    there = dict(id=80 + np.arange(len(beads)), x=places[:, 0], y=places[:, 1], r=np.full(len(beads), 0.2 * D), centre=centre)
+    there = dict(
+        id=80 + np.arange(len(beads)), x=places[:, 0], y=places[:, 1], r=np.full(len(beads), 0.2 * D), centre=centre
+    )
     there.update({name: np.zeros(len(beads)) for name in ("vx", "vy", "spin")})
     if shape == "disk":
         there["angle"] = np.arctan2(sin, cos)
