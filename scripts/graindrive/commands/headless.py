@@ -57,7 +57,7 @@ def end(code):
 
 
 def carry_out(study, p):
-    """Run the `Study` in its run folder, with stop signals handled, and film it if asked; a film that cannot be is refused first."""
+    """Run the `Study` in its run folder, signals handled, and film it if asked; a film that cannot be is refused first."""
     if p.film:
         films().require_possible(study, p)
     try:
