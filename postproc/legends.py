@@ -30,6 +30,8 @@ def settle(figure):
 
 def placed(axes):
     """Put the legend of a panel where no data is, if there is such a place; return whether there is."""
+    if not legend_fits(axes, 1.0):
+        return False
     legend, given = axes.get_legend(), axes.get_legend()._loc
     for place in ([given] if given != 0 else []) + list(PLACES):
         legend._loc = place if isinstance(place, (int, tuple)) else legend.codes[place]
@@ -41,7 +43,7 @@ def placed(axes):
 def make_room(axes):
     """Raise the upper end of a panel's y axis until its legend has room there; put it beside the panel if that is too much."""
     low, high = transformed(axes, axes.get_ylim())
-    legend, grows = axes.get_legend(), axes.get_aspect() == "auto" and legend_fits(axes)
+    legend, grows = axes.get_legend(), axes.get_aspect() == "auto" and legend_fits(axes, MOST)
     for share in np.arange(STEP, MOST + STEP / 2, STEP) if grows else ():
         axes.set_ylim(untransformed(axes, (low, low + (high - low) / (1 - share))))
         for place in ("upper right", "upper left", "upper center"):
@@ -52,10 +54,10 @@ def make_room(axes):
     put_beside(axes)
 
 
-def legend_fits(axes):
-    """True if a panel's legend is narrower than the panel and no higher than the room that may be made for it."""
+def legend_fits(axes, share):
+    """True if a panel's legend is narrower than the panel and no higher than that share of its height."""
     box, panel = legend_box(axes), axes.get_window_extent()
-    return box.width < panel.width and box.height < MOST * panel.height
+    return box.width < panel.width and box.height < share * panel.height
 
 
 def put_beside(axes):

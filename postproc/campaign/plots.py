@@ -33,6 +33,21 @@ def draw_curves(axes, rows, by, key, name, label):
         draw_points(axes, x, points, **look(k, label.format(value)))
 
 
+def rows_of_panels(count, *, width, height, columns=3):
+    """Return (figure, `count` axes) in rows of at most `columns`; `height` is a row's [inches]; what is left over stays empty."""
+    columns = max(1, min(columns, count))
+    lines = max(1, -(-count // columns))
+    figure, axes = canvas(lines, columns, width=width, height=height * lines)
+    for spare in axes.ravel()[max(1, count) :]:
+        spare.set_axis_off()
+    return figure, axes.ravel()[: max(1, count)]
+
+
+def from_zero(axes):
+    """Let the y axis of a panel begin at 0, with some room above the data."""
+    axes.set_ylim(0, axes.get_ylim()[1] + 0.05 * abs(axes.get_ylim()[1]))
+
+
 def share_y(axes):
     """Give all axes the range that holds them all, and keep it one if a legend asks for more of it."""
     low, high = zip(*(panel.get_ylim() for panel in axes))

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import figures
 from ..campaign.planned import PlannedFigure
-from ..campaign.plots import canvas, share_y
+from ..campaign.plots import rows_of_panels, share_y
 from ..campaign.verdicts import below
 from ..figures import BLACK
 from ..measured import Measured
@@ -47,8 +47,8 @@ def constants_claims(campaign, rows):
 def draw(campaign, rows):
     """u/(Omega D) against z/D, a panel for each speed: grains open, a colour for each set of constants."""
     groups = list(by_constants(campaign, rows))
-    figure, axes = canvas(1, max(1, len(groups)), width=2 * figures.COLUMN_WIDTH, height=2.6)
-    for panel, (diameter, omega, grains, fluids) in zip(axes[0], groups):
+    figure, axes = rows_of_panels(len(groups), width=2 * figures.COLUMN_WIDTH, height=2.4)
+    for panel, (diameter, omega, grains, fluids) in zip(axes, groups):
         z, u, error = grains.scaled
         panel.errorbar(z, u, np.nan_to_num(error), **look(0, "dem", "grains"))
         for k, (constants, (fluid, _)) in enumerate(fluids.items(), start=1):
@@ -57,9 +57,9 @@ def draw(campaign, rows):
         panel.plot([0, 0.5], [0, -0.5], color=BLACK, linewidth=0.8)
         panel.set(xlabel="z/D", title=f"D = {diameter:g} d, Fr = {omega**2 * diameter / 2:.3g}", xlim=(-0.05, 0.5))
     if groups:
-        axes[0, -1].legend(fontsize=5)
-    share_y(axes[0])
-    axes[0, 0].set_ylabel("u/(ΩD)")
+        axes[-1].legend(fontsize=5)
+    share_y(axes)
+    axes[0].set_ylabel("u/(ΩD)")
     return figure
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from .. import figures
-from ..campaign.plots import COLOURS, MARKERS, canvas, draw_points, share_y
+from ..campaign.plots import COLOURS, MARKERS, canvas, draw_points, from_zero, share_y
 from ..figures import BLACK, GREY
 from .claims import NAMES, PAPERS_FRACTION, fitted, modelled
 from .figure import draw_surface, frame_drum, in_squares
@@ -97,11 +97,12 @@ def thickness(_campaign, rows):
     for (model, chosen, _), line in zip(modelled(rows, "thickness_over_diameter"), ("--", "-")):
         slope, intercept = fitted(chosen, model)
         middle.plot(froude, intercept.value + slope.value * froude, line, color=BLACK, linewidth=0.8)
-    left.set(xlabel="Ω [√(g/d)]", ylabel="h [d]", ylim=(0, None))
-    middle.set(xlabel="Fr", ylabel="h/D", ylim=(0, None))
-    right.set(xlabel="Fr", ylabel="angle of the surface [degrees]", ylim=(0, None))
+    left.set(xlabel="Ω [√(g/d)]", ylabel="h [d]")
+    middle.set(xlabel="Fr", ylabel="h/D")
+    right.set(xlabel="Fr", ylabel="angle of the surface [degrees]")
     for panel in (left, middle, right):
         panel.locator_params(axis="x", nbins=4)
+        from_zero(panel)
     middle.legend(fontsize=6)
     return figure
 

@@ -18,7 +18,8 @@ def draw(path, frame=-1):
         axes.axvspan(found["expected"] - found["bound"], found["expected"] + found["bound"], color=GREY, alpha=0.5)
         axes.axvline(found["expected"], color=BLACK, linewidth=0.7)
         axes.plot(found["measured"], 0, "o", color=COLOURS[found["outcome"]])
-        axes.set(xlabel=f"measured {found['measured']:.6g}; grey: expected and bound", yticks=[])
+        measured = f"{found['measured']:.6g}".replace("-", "−")
+        axes.set(title=f"measured {measured}; grey: expected and bound", yticks=[])
         draw_trials(below, trials)
         save(figure, path)
 

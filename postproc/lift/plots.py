@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import fields, figures
-from ..campaign.plots import canvas, draw_points, look
+from ..campaign.plots import canvas, draw_points, from_zero, look
 from ..campaign.runs import curve, quantity
 from ..figures import BLACK
 from .claims import differences, stress, with_weight, without_weight
@@ -26,7 +26,8 @@ def against_depth(_campaign, rows):
         for panel, name in ((left, "drag_coefficient"), (right, "lift_over_buoyancy")):
             points = [quantity(group.iloc[[n]], name) for n in range(len(group))]
             draw_points(panel, group["depth_over_d"], points, linestyle="", **look(k, label))
-    left.set(xlabel=r"$\tilde h/D$", ylabel=r"$C_d$", ylim=(0, None))
+    left.set(xlabel=r"$\tilde h/D$", ylabel=r"$C_d$")
+    from_zero(left)
     right.set(xlabel=r"$\tilde h/D$", ylabel="lift over buoyancy")
     right.axhline(0, color=BLACK, linewidth=0.4)
     left.legend(fontsize=6)
@@ -74,7 +75,8 @@ def against(key, label, name, symbol, by=None):
         figure, ((axes,),) = canvas(1, 1, width=1.6 * figures.COLUMN_WIDTH, height=2.4)
         for k, (value, group) in enumerate(rows.groupby(by) if by else [("", rows)]):
             draw_points(axes, *curve(group, key, name), **look(k, f"{by} = {value:g}" if by else None))
-        axes.set(xlabel=label, ylabel=symbol, ylim=(0, None))
+        axes.set(xlabel=label, ylabel=symbol)
+        from_zero(axes)
         if by:
             axes.legend(fontsize=6)
         return figure

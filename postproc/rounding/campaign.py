@@ -109,7 +109,7 @@ def draw_averages(campaign, rows):
             axes.errorbar(place, 100 * (ratio.value - 1), 100 * ratio.error, label=LABELS[name] * (k == 0), **options)
     axes.axhline(0, color=figures.GREY, linewidth=0.6)
     axes.set_xticks(range(len(AVERAGED)), [key.replace("_", " ") for key in AVERAGED])
-    axes.set(ylabel="mean over that of 64 bits, less 1  [%]")
+    axes.set(ylabel="mean over that\nof 64 bits, less 1  [%]")
     axes.legend()
     return figure
 

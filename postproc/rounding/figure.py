@@ -60,7 +60,7 @@ def draw_averages(axes, run):
             axes.errorbar(place, 100 * (value / reference - 1), 100 * error / reference, **options)
     axes.axhline(0, color=GREY, linewidth=0.6)
     axes.set_xticks(range(len(AVERAGED)), [name.replace("_", " ") for name in AVERAGED])
-    axes.set(ylabel="mean over that of 64 bits, less 1  [%]")
+    axes.set(ylabel="mean over that\nof 64 bits, less 1  [%]")
 
 
 def draw_velocities(axes, run):

@@ -57,7 +57,7 @@ def draw_stiffness(campaign, rows):
         pressure, points = curve(rows, "pressure", name)
         stiffness = float(rows["stiffness"].iloc[0]) * DISK
         draw_points(panel, stiffness / pressure, points, **look(0, ""))
-        panel.set(xscale="log", xlabel="k_n/P", ylabel=label)
+        panel.set(xscale="log", xlabel="$k_n/P$", ylabel=label)
     return figure
 
 

@@ -77,6 +77,6 @@ def reach(inertial):
 
 def draw_law(axes, inertial, law, words, **style):
     """Draw a `FrictionLaw` with its constants and chi^2 in the legend."""
-    constants = f"μ_s {law.mu_s}, μ_2 {law.mu_2},\nI_0 {law.i_0}, χ²/f = {law.chi_squared:.1f}"
+    constants = f"μ$_s$ {law.mu_s}, μ$_2$ {law.mu_2},\nI$_0$ {law.i_0}, χ²/f = {law.chi_squared:.1f}"
     line = reach(inertial)
     axes.plot(line, law(line), linewidth=0.8, label=f"{words}:\n{constants}", **style)

@@ -105,7 +105,7 @@ def draw(campaign, rows):
             middle, slow, stiffness_over_pressure(of_pressure, "inertial_number"), **look(0, "constant pressure")
         )
     left.set(xscale="log", xlabel="inertial number I", ylabel="μ = τ/p", ylim=(0, None))
-    middle.set(xscale="log", yscale="log", xlabel="inertial number I", ylabel="k_n/p")
+    middle.set(xscale="log", yscale="log", xlabel="inertial number I", ylabel="$k_n/p$")
     draw_soft(right, campaign)
     left.legend()
     middle.legend()

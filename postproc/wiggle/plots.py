@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
 from .. import figures
-from ..campaign.plots import COLOURS, canvas, draw_points, look, share_y
+from ..campaign.plots import COLOURS, canvas, draw_points, look, rows_of_panels, share_y
 from ..campaign.runs import curve, quantity
 from ..figures import BLACK, GREY, VERMILLION
 from ..measured import UNKNOWN, Limit
@@ -23,12 +23,7 @@ PERIOD_LABEL = r"$T$  [$\sqrt{d/g}$]"
 
 def panels(groups, *, height=1.9, columns=3):
     """Return (figure, one axes per group, in rows of `columns`)."""
-    columns = min(columns, len(groups))
-    lines = -(-len(groups) // columns)
-    figure, axes = canvas(lines, columns, width=2 * figures.COLUMN_WIDTH, height=height * lines)
-    for spare in axes.ravel()[len(groups) :]:
-        spare.set_axis_off()
-    return figure, axes.ravel()[: len(groups)]
+    return rows_of_panels(len(groups), width=2 * figures.COLUMN_WIDTH, height=height, columns=columns)
 
 
 def lines_by_shape(rows, key, label, points_of, xlabel):

@@ -119,7 +119,7 @@ def test_the_figure_of_a_run_is_drawn_from_its_fields(folder, model):
     (run,) = (folder / "runs").iterdir()
     figure.draw(run)
     assert (run / "figure.png").stat().st_size > 20_000 and (run / "figure.pdf").exists()
-    words = " ".join(figure.title(Run(run)))
+    words = ", ".join(figure.title(Run(run)))
     assert ("difference" in words) == (model == "both") and "h/D" in words
 
 

@@ -104,14 +104,14 @@ def test_a_growing_run_shows_its_series(tmp_path):
 
 
 @pytest.mark.parametrize("options", [{}, {"frames": 0}, {"contacts": False}, {"width": 300.0}])
-def test_the_figure_is_drawn_from_the_folder_alone(tmp_path, options):
+def test_the_figure_is_drawn_from_the_folder_alone(tmp_path, options, figures_drawn):
     from matplotlib.image import imread
 
     out = make(tmp_path / "run", **options)
     figure.draw(out)
     image = imread(out / "figure.png")
     assert image.shape[1] == 1020, "3.4 inches at 300 dpi"
-    assert image.shape[0] > (700 if options.get("frames", 2) else 500), "a second panel where there is a frame"
+    assert image.shape[0] > (1400 if options.get("frames", 2) else 1000), "a fourth panel where there is a frame"
     assert (out / "figure.pdf").read_bytes()[:4] == b"%PDF"
     assert sorted(p.name for p in out.iterdir()) == ["figure.pdf", "figure.png", "run.h5", "summary.json"]
 
