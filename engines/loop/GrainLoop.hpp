@@ -57,7 +57,7 @@ public:
 			"do");
 		visit("trackEnergy", &Self::trackEnergy,
 			"keep the energy ledger that `energy` tells; it begins when switched on, and anew with read(); a step then takes "
-			"some eight times as long");
+			"ten to thirty times as long");
 		visit("loads", &Self::loads, "id, F_x, F_y, F_z [N] of constant forces on bodies, as setLoad leaves them");
 		visit("wallSettings", &Self::wallSettings, "eleven numbers a wall, as setWall leaves them, at the last sync, for O.save");
 		visit("wallSprings", &Self::wallSprings,
