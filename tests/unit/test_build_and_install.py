@@ -1,4 +1,4 @@
-"""What the CMake project builds for a run, what it says when a test's tools are missing, and that an installed tree works alone."""
+"""What the CMake project builds for a run, what it says without GoogleTest, and that an installed tree works alone."""
 
 import json
 import os
