@@ -19,9 +19,11 @@ def settle(figure):
     for axes in panels:
         axes.get_legend().set_in_layout(False)  # inside of its panel it takes no room of the layout
     figure.draw_without_rendering()  # the layout decides how large panels and legends are
-    for axes in panels:
-        if not placed(axes):
-            make_room(axes)
+    crowded = [axes for axes in panels if not placed(axes)]
+    if not crowded:
+        return
+    for axes in crowded:
+        make_room(axes)
     figure.draw_without_rendering()
     for axes in panels:  # a legend beside a panel, or a wider label, has made the panels smaller
         if covered(axes):

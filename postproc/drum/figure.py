@@ -4,7 +4,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Circle
 
-from ...base.numbers import with_error
 from ..figures import (
     BLACK,
     BLUE,
@@ -68,7 +67,7 @@ def title(run):
         ("dem_continuum_difference", "difference {} %", 100),
     ):
         if found.get(name) is not None:
-            parts.append(symbol.format(with_error(scale * found[name], scale * (found.get(f"{name}_err") or 0.0))))
+            parts.append(symbol.format(Measured(scale * found[name], scale * (found.get(f"{name}_err") or 0.0))))
     return parts
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...base.numbers import with_error
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREEN, GREY, STYLE, VERMILLION, plt, save, set_title
+from ..measured import Measured
 from ..reader import Run
 from ..running import draw_convergence, draw_running, running_mean, running_ratio
 
@@ -40,7 +40,7 @@ def draw(path, frame=-1):
 def title(run):
     """Return in words what flowed how, and by which seed: the parts of a title."""
     p = run.parameters
-    inertial = with_error(*(run.summary[f"flow_inertial_number{end}"] for end in ("", "_err")))
+    inertial = Measured(*(run.summary[f"flow_inertial_number{end}"] for end in ("", "_err")))
     return [f"{p['grains']} disks", f"$I$ = {inertial}", rf"friction $\mu$ = {p['friction']:g}", f"seed {p['seed']}"]
 
 

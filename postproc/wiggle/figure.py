@@ -6,10 +6,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import PowerNorm
 
-from ...base.numbers import with_error
 from ..drift import drift, phase_rates
 from ..figures import BLACK, BLUE, COLUMN_WIDTH, GREY, PURPLE, STYLE, VERMILLION, colour_bar, draw_body, draw_chains
 from ..figures import draw_disk, draw_grains, save, set_title
+from ..measured import Measured
 from ..reader import BASE, GRAIN, INTRUDER, Run
 from ..running import draw_convergence, running_mean
 from . import around
@@ -122,7 +122,7 @@ def title(run):
 def draw_rate(axes, found):
     """Line between the middles of the average's first and last cycle, whose slope is the rise rate, named with its error."""
     inside = averaged(found)
-    label = rf"$V_y$ = {with_error(found.rate, found.error)} $\sqrt{{gd}}$"
+    label = rf"$V_y$ = {Measured(found.rate, found.error)} $\sqrt{{gd}}$"
     middles, means = (column[inside][[0, -1]] for column in (found.cycle_t, found.cycle_y))
     axes.plot(middles, means, color=VERMILLION, linestyle=(0, (4, 2)), linewidth=1.2, label=label)
 

@@ -15,6 +15,7 @@ from graindrive.beds import sphere_bed
 from graindrive.scenes import yade_march
 from graindrive.benchmark import peer_lift
 from graindrive.base.errors import Interrupted, UsageError
+from graindrive.base.numbers import with_error
 from graindrive.commands.killtest import TIMED
 from graindrive.postproc.lift import forces
 from graindrive.runs.run_folder import RunFolder
@@ -245,7 +246,7 @@ def test_the_cylinder_may_stand_still_in_place_of_the_bed(lift, tmp_path, monkey
 # ---- what a run leaves -------------------------------------------------------------------------------------------
 
 
-def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path):
+def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path, figures_drawn):
     """A Gaussian of 8 degrees takes exp(-zeta^2/2) of the first harmonic, of which the force consists."""
     carry_out(lift, tmp_path / "run")
     found = summary_of(tmp_path / "run")
@@ -260,6 +261,9 @@ def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path):
     assert drag == pytest.approx(found["drag"] * smoothed, rel=1e-3)  # 64 points stand for the integral
     assert up == pytest.approx(found["lift"] * smoothed, abs=1e-3 * found["drag"])
     assert found["drag_coefficient"] > 0.5
+    lift.STUDY.figure(tmp_path / "run")
+    words = figures_drawn[0].axes[1].get_legend().get_texts()[0].get_text()
+    assert with_error(found["lift_over_buoyancy"], found["lift_over_buoyancy_err"]) in words  # where the running mean ends
 
 
 @pytest.mark.parametrize("keys", [dict(), dict(bulk_gravity=False)], ids=str)

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
+from graindrive.base.numbers import with_error
 from graindrive.commands import headless
 from graindrive.scenes import yade_march
 from graindrive.base.errors import EngineError, Interrupted, UsageError
@@ -109,7 +110,7 @@ def test_lift_points_against_omega_cross_v(magnus, tmp_path):
     assert found["front_share"] > 0.9
 
 
-def test_summary_agrees_with_the_series(magnus, tmp_path):
+def test_summary_and_figure_agree_with_the_series(magnus, tmp_path, figures_drawn):
     series = carry_out(magnus, tmp_path / "run", travel=4.0)
     found = summary_of(tmp_path / "run")
     steady = series["travel"] >= found["steady_from"] - 1e-9
@@ -118,6 +119,9 @@ def test_summary_agrees_with_the_series(magnus, tmp_path):
     assert abs(found["phi"] - 0.352) < 1e-3 and found["v0"] == 2.5
     # x = V0 t to round-off of positions of 1 m
     assert np.abs(series["x"] - 0.24 - 2.5 * series["t"]).max() < 1e-12
+    magnus.STUDY.figure(tmp_path / "run")
+    words = figures_drawn[0].axes[1].get_legend().get_texts()[0].get_text()
+    assert with_error(found["lift_to_drag"], found["lift_to_drag_err"]) in words  # where the running mean ends
 
 
 def test_both_loops_give_the_same_forces_until_chaos(magnus, tmp_path):

@@ -12,6 +12,7 @@ from known_names import unexplained
 
 from graindrive.scenes import yade_march
 from graindrive.base.errors import Interrupted, UsageError
+from graindrive.base.numbers import with_error
 from graindrive.postproc.reader import Run
 from graindrive.postproc.shear.flow import steady_flow
 from graindrive.runs.run_folder import RunFolder
@@ -37,7 +38,7 @@ def carry_out(shear, out, **changes):
     return series, json.loads((Path(out) / "summary.json").read_text())
 
 
-def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path):
+def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path, figures_drawn):
     series, found = carry_out(shear, tmp_path / "run", strain=4.0, settle_strain=2.0, pressure=100.0)
     assert found["mean_pressure"] == pytest.approx(100, rel=0.1)  # of 80 disks that flow, over two strains
     assert 0.1 < found["stress_ratio"] < 1 and 0.6 < found["phi"] < 0.85
@@ -45,6 +46,10 @@ def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path):
     np.testing.assert_allclose(series["mean_pressure"], trace / 2, rtol=1e-12)
     np.testing.assert_allclose(series["shear_stress"], -series["contact_sxy"] - series["kinetic_sxy"], rtol=1e-12)
     assert series["strain"][-1] == pytest.approx(4.0, rel=0.02)
+    shear.STUDY.figure(tmp_path / "run")
+    for panel, name in ((0, "stress_ratio"), (2, "mean_pressure"), (3, "phi")):
+        words = figures_drawn[0].axes[panel].get_legend().get_texts()[0].get_text()
+        assert with_error(found[name], found[f"{name}_err"]) in words  # where the running mean ends
 
 
 def test_an_area_fraction_is_reached_and_kept(shear, tmp_path):

@@ -98,7 +98,7 @@ def test_fraction_and_place_of_the_surface(folder):
     assert [c.verdict for c in claims.surface_claims(campaign, campaign.sweep("one"))] == [Verdict.REPRODUCED] * 2
 
 
-def test_a_report_has_all_figures_and_claims(folder):
+def test_a_report_has_all_figures_and_claims(folder, figures_drawn):
     text = write_report(Campaign.of(make_drums(folder, MadeUpDrums(), SPEEDS)).folder, REPORT).read_text()
     assert all((folder / "figures" / f"made_up-{planned.name}.png").exists() for planned in REPORT.figures)
     # 6 differences, 2 rigid rotations, 3 collapses of two models, 6 differences again for the one set of constants,
@@ -114,7 +114,7 @@ def test_claims_on_grains_alone_speak_of_no_continuum(folder):
 
 
 @pytest.mark.parametrize("model", ["continuum", "both"])
-def test_the_figure_of_a_run_is_drawn_from_its_fields(folder, model):
+def test_the_figure_of_a_run_is_drawn_from_its_fields(folder, model, figures_drawn):
     make_drums(folder, MadeUpDrums(), dict(one=dict(model=[model])))
     (run,) = (folder / "runs").iterdir()
     figure.draw(run)

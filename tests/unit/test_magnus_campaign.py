@@ -62,7 +62,7 @@ def test_runs_with_large_errors_decide_nothing(folder):
     assert Verdict.REPRODUCED not in {c.verdict for c in claims if "slope" in c.text}
 
 
-def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder):
+def test_the_paper_of_made_up_runs_is_reproduced_and_written(folder, figures_drawn):
     make_campaign(folder, MadeUpMagnus(rise=0.5), SWEEPS)
     report = write_report(folder, REPORT).read_text()
     assert "0 not reproduced, 0 not decided" in report

@@ -270,7 +270,7 @@ def test_fields_are_judged_on_both_ways(tmp_path):
     assert len(judged) == 9
 
 
-def test_all_figures_are_drawn_and_the_report_names_them(tmp_path):
+def test_all_figures_are_drawn_and_the_report_names_them(tmp_path, figures_drawn):
     folder = tmp_path / "made_up"
     folder.mkdir()
     campaign_of(
