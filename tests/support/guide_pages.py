@@ -58,7 +58,7 @@ def type_in(text, place, programs=()):
 
 
 def apply_changes(name, place):
-    """Apply the diffs of a page to copies of the files that they name, exactly where they say, and write its own files beside them."""
+    """Apply the diffs of a page to copies of the files that they name, exactly where they say, and write its own files."""
     for _, language, text in blocks(name):
         for file in re.findall(r"^--- a/(\S+)$", text, re.MULTILINE) if language == "diff" else []:
             (place / file).parent.mkdir(parents=True, exist_ok=True)
