@@ -37,7 +37,7 @@ def as_markdown(campaign, observables=()):
     `observables` have name, unit and meaning, as a study's `Observable`s; without any all quantities that have an error are
     shown.
     """
-    shown = [o for o in (observables or measured_with_errors(campaign)) if column_of(campaign.table, o.name)]
+    shown = observables or measured_with_errors(campaign)
     plan = campaign.plan
     parts = [f"## Runs of {plan['study']} (`{plan['name']}`)", settings(campaign), HOW]
     sweeps = list(dict.fromkeys(sweep for sweeps in campaign.table["sweeps"] for sweep in sweeps.split()))
@@ -62,8 +62,9 @@ def column_of(table, name):
 
 
 def sweep_parts(campaign, sweep, shown):
-    """Return the paragraphs on one sweep: its table, and a figure of each observable; draws the figures."""
+    """Return the paragraphs on one sweep: its table, and a figure of each observable that its runs have; draws the figures."""
     rows = campaign.sweep(sweep)
+    shown = [observable for observable in shown if values_of(rows, observable.name)]
     keys = [key for key in campaign.varied(rows) if key != "seed"]
     units = campaign.units(rows["run"].iloc[0])
     parts = [f"### Sweep `{sweep}`", table_of_values(rows, keys, units, shown)]
@@ -80,10 +81,15 @@ def table_of_values(rows, keys, units, shown):
     """Return a Markdown table with a line for each setting of the keys: values, number of runs, observables with errors."""
     heading = [*(with_unit(key, units.get(key)) for key in keys), "runs", *(with_unit(o.name, o.unit) for o in shown)]
     lines = [
-        [*map(number, setting), len(group), *(over_seeds(group, o.name) for o in shown)]
+        [*map(number, setting), len(group), *(in_cell(over_seeds(group, o.name)) for o in shown)]
         for setting, group in groups(rows, keys)
     ]
     return table_of(heading, lines)
+
+
+def in_cell(measured):
+    """Return a `Measured` in words, a dash where there is no value."""
+    return str(measured) if np.isfinite(measured.value) else "–"
 
 
 def with_unit(name, unit):
@@ -105,12 +111,18 @@ def groups(rows, keys):
     return [(setting, rows[[s == setting for s in settings_of]]) for setting in dict.fromkeys(settings_of)]
 
 
+def values_of(rows, name):
+    """Return a quantity of each run that has it, a list of `Measured`."""
+    column = column_of(rows, name)
+    return measurements(rows.assign(**{name: rows[column]}), name) if column else []
+
+
 def over_seeds(rows, name):
     """Return a quantity of runs that differ in their seeds alone, as `Measured`.
 
     The error is the scatter's, s/sqrt(n), from two runs on; a single run has its own.
     """
-    found = measurements(rows.assign(**{name: rows[column_of(rows, name)]}), name)
+    found = values_of(rows, name)
     if len(found) == 1:
         return found[0]
     values = np.array([m.value for m in found])

@@ -36,9 +36,8 @@ def test_the_index_names_every_page_and_every_page_says_what_to_look_at():
 def test_a_shape_of_ones_own_in_a_plane_and_in_space(tmp_path):
     follow("shape.md", tmp_path)
     wiggle, lift = Run(tmp_path / "arrow-run"), Run(tmp_path / "rod-run")
-    # The outline is the beads' envelope, 8 d high as drawn; all shapes of the study are scaled to the weight of its disk.
     assert wiggle.state == lift.state == "complete" and wiggle.parameters["shape"] == "arrow.csv"
-    assert lift.summary["body_height"] == pytest.approx(3, abs=0.05)  # sampled on a grid
+    assert lift.summary["body_height"] == pytest.approx(3, abs=0.2)  # between points a tenth of d apart
     assert (tmp_path / "arrow-run/figure.png").exists() and (tmp_path / "rod-run/figure.png").exists()
 
 

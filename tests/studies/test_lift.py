@@ -263,7 +263,9 @@ def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path, figures_dr
     assert found["drag_coefficient"] > 0.5
     lift.STUDY.figure(tmp_path / "run")
     words = figures_drawn[0].axes[1].get_legend().get_texts()[0].get_text()
-    assert with_error(found["lift_over_buoyancy"], found["lift_over_buoyancy_err"]) in words  # where the running mean ends
+    assert (
+        with_error(found["lift_over_buoyancy"], found["lift_over_buoyancy_err"]) in words
+    )  # where the running mean ends
 
 
 @pytest.mark.parametrize("keys", [dict(), dict(bulk_gravity=False)], ids=str)

@@ -40,6 +40,8 @@ def test_what_is_told_of_an_attribute_is_so(cls):
     """Every attribute can be set to its default if it says so, and cannot be set at all if not."""
     fresh = cls()
     for told in attribute_help.attributes_of(cls):
+        if told.type == "NoneType":
+            continue  # nothing is there by default, which cannot be given
         if told.settable:
             setattr(fresh, told.name, getattr(cls(), told.name))
             assert repr(getattr(fresh, told.name)) == told.default, told.name
@@ -140,10 +142,15 @@ def test_every_module_but_programs_is_in_a_room():
 
 @needs_sphinx
 @pytest.mark.parametrize(
-    "link, code",
-    [("[a](../../own.md#two)", 0), ("[a](../../gone.md)", 1), ("[a](../../own.md#gone)", 1), ("![a](gone.png)", 1)],
+    "link, broken",
+    [
+        ("[a](../../own.md#two)", False),
+        ("[a](../../gone.md)", True),
+        ("[a](../../own.md#gone)", True),
+        ("![a](gone.png)", True),
+    ],
 )
-def test_a_link_that_leads_nowhere_is_an_error(tmp_path, monkeypatch, link, code):
+def test_a_link_that_leads_nowhere_is_an_error(tmp_path, monkeypatch, link, broken):
     from sphinx.cmd.build import main as sphinx
 
     monkeypatch.setattr(sources, "modules", lambda: [])
@@ -151,7 +158,8 @@ def test_a_link_that_leads_nowhere_is_an_error(tmp_path, monkeypatch, link, code
     top = checkout(tmp_path / "top", f"# Guides\n{link} [b](../../own.md)\n")
     (top / "own.md").write_text("# One\n## Two\n")
     sources.write(tmp_path / "made", top)
-    assert sphinx(["-n", "-W", "-q", "-b", "html", str(tmp_path / "made"), str(tmp_path / "html")]) == code
+    code = sphinx(["-n", "-W", "-q", "-b", "html", str(tmp_path / "made"), str(tmp_path / "html")])
+    assert (code != 0) is broken
 
 
 def test_missing_packages_are_named(monkeypatch, capsys, tmp_path):

@@ -24,10 +24,7 @@ def heading(text, mark):
 def engines_page():
     """Return the page of all classes and functions of the compiled module, as text."""
     lines = heading("Engines", "=")
-    lines += [
-        "All stand in ``graindrive.engines``. An empty unit is that of words, switches and counts; ``-`` that of a pure number.",
-        "",
-    ]
+    lines += ["In ``graindrive.engines``. Words, switches and counts have no unit; ``-`` is that of a pure number.", ""]
     left = engines.classes()
     for base, title in KINDS:
         of_kind = [cls for cls in left if base in [b.__name__ for b in cls.__mro__] or not base]
