@@ -13,6 +13,7 @@ namespace {
 constexpr double fewest_steps = 20, most_steps = 200;  // between two selections, aimed at where grains are fast
 constexpr double smallest_part = 0.001;                // budget [d]
 constexpr double horizon_in_paces = 1.25;              // how long a selection may last, should budgets not be used up
+constexpr double drifts_share_of_skin = 0.6;           // two budgets take at most twice 0.15 of it
 
 /// Of the skin.
 template <int D>
@@ -43,13 +44,29 @@ template <int D>
 void Budgets<D>::choose_horizon()
 {
 	if (D == 2) return;
+	const double steps =
+		std::min(horizon_in_paces * state.pace, std::max(state.typical_diameter / gain_per_step(), fewest_steps));
+	state.horizon = std::ceil(steps) * state.scene.dt;
+}
+
+/// A search finds pairs nearer than the skin: until the horizon no two may come nearer by more.
+template <int D>
+void Budgets<D>::keep_horizon_within_skin()
+{
+	if (D == 2) return;
+	const double steps = std::max(1., std::floor(drifts_share_of_skin * state.skin / gain_per_step()));
+	state.horizon = std::min(state.horizon, steps * state.scene.dt);
+}
+
+/// How much nearer the drifts of two parties bring them in a step, at most [m].
+template <int D>
+double Budgets<D>::gain_per_step() const
+{
 	Vec<D> slowest = Vec<D>::all(HUGE_VAL), fastest = Vec<D>::all(-HUGE_VAL);
 	for (std::size_t p = 0; p < speed.size(); ++p)
 		for (int k = 0; k < D; ++k)
 			slowest[k] = std::min(slowest[k], drift_of(p)[k]), fastest[k] = std::max(fastest[k], drift_of(p)[k]);
-	const double dt = state.scene.dt, gain = speed.empty() ? 0 : length(fastest - slowest) * dt;
-	const double steps = std::min(horizon_in_paces * state.pace, std::max(state.typical_diameter / gain, fewest_steps));
-	state.horizon = std::ceil(steps) * dt;
+	return speed.empty() ? 0 : length(fastest - slowest) * state.scene.dt;
 }
 
 template <int D>

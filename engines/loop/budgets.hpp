@@ -27,6 +27,7 @@ public:
 	void allow_travel();
 	/// For how long a selection may last, in space [s]; without end in the plane.
 	void choose_horizon();
+	void keep_horizon_within_skin();  ///< right after a search
 	void choose_pace(const PairCounts& counts, std::size_t candidates);
 	/// A bound on how much nearer two grains can have come to each other since the last search when the next selection is made [m].
 	double approach_before_selection() const;
@@ -45,6 +46,8 @@ public:
 	void begin_selection();
 
 private:
+	double gain_per_step() const;
+
 	State<D>& state;
 	std::vector<double> speed, displaced;                             // by party; speed against the drift
 	std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours;  // those with candidates in common

@@ -62,7 +62,9 @@ void Stepper<D>::plan_lists()
 		budgets.choose_horizon();
 		if (state.searches > 0) budgets.allow_travel();
 		searching = state.searches == 0 || !(budgets.approach_before_selection() <= state.skin);
-		if (searching) begin_search(), moved_since_look = true;
+		if (searching) begin_search(), budgets.keep_horizon_within_skin();
+		// In space a search waits for neighbours to move differently, which two that pass through each other need not do.
+		moved_since_look |= searching || D == 3;
 	} catch (...) {
 		failure = std::current_exception();
 	}

@@ -63,7 +63,7 @@ def test_a_campaign_runs_where_the_path_has_braces_and_blanks(tmp_path):
     place = Place(folder)
     code, words = place.run("  a: {seed: 31}\n")
     assert code == 0 and "0 of 1 runs are there already" in words
-    assert place.folder("seed_31")
+    assert place.folder("seed=31")
 
 
 def test_failures_are_told_killed_runs_resume_and_finished_runs_are_not_repeated(place):
@@ -71,14 +71,14 @@ def test_failures_are_told_killed_runs_resume_and_finished_runs_are_not_repeated
     code, words = place.run(sweeps, "--cores", "2")
     assert code == 1 and "0 of 3 runs are there already" in words
     assert "ValueError: the study has a bug" in words and "2 of 3 runs are missing" in words
-    good = place.folder("seed_11")
+    good = place.folder("seed=11")
     before = {p.name: p.stat().st_mtime_ns for p in good.iterdir()}
     assert list(pd.read_csv(place.path / "toy" / "table.csv")["seed"]) == [11]
 
     code, words = place.run(sweeps.replace(", ask: KILL", "").replace(", fault: study", ""), "--cores", "2")
     assert code == 0 and "1 of 3 runs are there already" in words
     assert {p.name: p.stat().st_mtime_ns for p in good.iterdir()} == before
-    assert "going on from step" in place.log("seed_12") and place.folder("seed_12")
+    assert "going on from step" in place.log("seed=12") and place.folder("seed=12")
     table = pd.read_csv(place.path / "toy" / "table.csv")
     assert list(table["seed"]) == [11, 12, 13] and list(table["first"]) == [
         0,
@@ -100,7 +100,7 @@ def wait_for(text, read, process):
 def test_an_interrupt_ends_all_and_the_next_call_goes_on(place):
     sweeps = "  a: {seed: 21, fault: slow, steps: 4000}\n"
     process = place.start(sweeps)
-    wait_for("toy:  20 %", lambda: place.log("seed_21") if list(place.path.glob("toy/logs/*.log")) else "", process)
+    wait_for("toy:  20 %", lambda: place.log("seed=21") if list(place.path.glob("toy/logs/*.log")) else "", process)
     process.send_signal(signal.SIGINT)
     _, words = process.communicate(timeout=60)
     assert process.returncode == 130 and "kept for the next call" in words
@@ -108,5 +108,5 @@ def test_an_interrupt_ends_all_and_the_next_call_goes_on(place):
     assert kept.name.endswith(".interrupted") and not list(place.path.glob("toy/table.csv"))
 
     code, words = place.run(sweeps)
-    assert code == 0 and "going on from step" in place.log("seed_21")
-    assert [p.name for p in place.runs.iterdir()] == [place.folder("seed_21").name]
+    assert code == 0 and "going on from step" in place.log("seed=21")
+    assert [p.name for p in place.runs.iterdir()] == [place.folder("seed=21").name]

@@ -20,7 +20,14 @@ RUNS = {
     "wiggle, velocity": dict(width=22, height=14, depth=6, amplitude=1, time=1, period=0.5, frames=1, drive="velocity"),
     "magnus": dict(width=24, height=20, travel=4, settle_travel=2, frames=2, field_spacing=0.5, intruder_diameter=3),
     "magnus, shape": dict(
-        width=24, height=20, travel=4, settle_travel=2, fields=False, shape="square", intruder_diameter=3
+        width=24,
+        height=20,
+        travel=4,
+        settle_travel=2,
+        fields=False,
+        shape="square",
+        intruder_diameter=3,
+        largest_overlap=0.3,
     ),
     "lift": dict(width=16, height=13, depth=6.5, cylinder_diameter=2, travel=9, lid_density=30, fields=False, frames=2),
 }

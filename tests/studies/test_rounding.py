@@ -98,7 +98,7 @@ def test_rates_of_a_known_growth_and_averages_come_out(rounding, tmp_path, monke
     error = run.summary["kinetic_energy_double_err"]
     assert run.summary["kinetic_energy_double"] == pytest.approx(1.0, abs=5 * error) and error < 0.1  # two unit normals
     assert run.summary["averages_apart_double"] < 5  # standard errors
-    rounding.figure.draw(run.path)
+    rounding.STUDY.figure(run.path)
     assert (run.path / "figure.png").exists()
 
 

@@ -79,7 +79,7 @@ def test_a_tuning_leaves_figure_table_sentences_book_and_parameters(place):
         "saves nothing",
     )  # by the processor's time, which is no test's matter
     text = (out / "report.md").read_text()
-    assert "- dt_factor=2 changes left by -0.5" in text
+    assert "- dt_factor=2 changes left by −0.5" in text
     assert matplotlib.image.imread(out / "figures" / "tuned-levers.png").std() > 0
     made = book.read(out / "measured.json")
     assert made.cover["rate"] == [1.0, 1.1] and made.same["noise"] == 1e-4 and made.study == "decay"

@@ -203,4 +203,23 @@ TEST(SphereBodies, random_states_keep_momentum_and_angular_momentum_but_for_the_
 	}
 }
 
+/// However fast it is: a selection of pairs must not outlast what the search has found.
+TEST(SphereBodies, a_driven_sphere_meets_what_lies_in_its_way)
+{
+	for (const double per_step : { 0.01, 0.1, 0.2, 0.4, 0.8 })  // of a radius
+		for (const double ahead : { 1.2, 2., 8. }) {            // [m]
+			RigidBody<3> driven;
+			Scene<3> s = alone(driven, 1e-4);
+			s.grains[0].place = {};
+			s.bodies[0].velocity[0] = per_step * s.grains[0].radius / s.dt;
+			s.grains.push_back(sphere({ ahead, 0, 0 }));
+			s.grains.back().velocity = {};
+			Stepper<3> loop(s);
+			loop.guarding().every = 0;
+			const double way = ahead;  // to its centre
+			loop.step(long(way / (s.bodies[0].velocity[0] * s.dt)));
+			EXPECT_GT(loop.grain(1).place[0], ahead) << per_step << " R a step, " << ahead << " m ahead";
+		}
+}
+
 }  // namespace graindrive::loop

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 CONFIDENCE = 0.9  # of intervals and bounds: at least nine in ten runs stay within what is said of them
+MANY = 1e6  # its square is more runs than anybody makes
 FEWEST_RUNS = 2  # deviations of which a scatter can be taken
 
 
@@ -46,7 +47,8 @@ class Effect:
         room = target - abs(self.bias)
         if not (math.isfinite(self.spread) and room > 0):
             return math.inf
-        return max(1, math.ceil((quantile(confidence, self.freedom) * self.spread / room) ** 2))
+        root = quantile(confidence, self.freedom) * self.spread / room
+        return max(1, math.ceil(root**2)) if root < MANY else math.inf
 
 
 def quantile(confidence, freedom):

@@ -54,7 +54,7 @@ def pressed_pair(law, setting, dimensions, dt, overlap, *, sliding):
     velocity = (0, speed / 2) if sliding else (0, 0)
     pair = [Grain((-apart / 2, 0), velocity), Grain((apart / 2, 0), (0, -velocity[1]))]
     law = Law(law.LAW, law.numbers, GRIP if sliding else 0.0)
-    ids = place(pair, law, setting, dt, dimensions, largestOverlap=1.0)
+    ids = place(pair, law, setting, dt, dimensions, largestOverlap=max(1.01 * overlap, DEEP))
     for ident, push in zip(ids, (force, -force)):
         O.forces.setPermF(ident, (push, 0, 0))
     return ids, (speed if sliding else nudge), apart + (0 if sliding else nudge)

@@ -101,7 +101,9 @@ def run(name, scene, rows_file):
 
 def environment(build):
     """Return the environment in which a plain Python finds that build of YADE, and Graindrive beside it; one thread."""
-    package = Path(sys.modules[__package__].__path__[-1]).absolute().parent  # where the compiled part is
+    package = (
+        Path(sys.modules[__package__.partition(".")[0]].__path__[-1]).absolute().parent
+    )  # where the compiled part is
     path = os.pathsep.join([modules_of(build), str(package)])
     return {**os.environ, "PYTHONPATH": path, "PYTHONNOUSERSITE": "1", "OMP_NUM_THREADS": "1"}
 
