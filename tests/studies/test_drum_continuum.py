@@ -329,10 +329,10 @@ def test_a_flow_that_outruns_its_step_says_which_key_to_lower(drum, tmp_path):
             dict(froude=0.05, continuum_dt=0.5),
             r"continuum_dt=0.5 lets the wall cross 0.78 cells .* take less than 0.3",
         ),
-        (dict(froude=1.0), "Fr=1 at D=40 d: from 1 on grains are centrifuged; lower angular_velocity or froude"),
+        (dict(froude=1.0), "Fr=1 at D=40 d: from Fr=1 on the grains are centrifuged; lower angular_velocity or froude"),
         (dict(continuum_dt=1e-12), "the run would take .* raise continuum_dt or the drum's speed"),
         (dict(drum_diameter=10), "drum_diameter=10 d has no room"),
-        (dict(model="both", filling=0.8), "filling=0.8 leaves the grains no room"),
+        (dict(model="both", filling=0.8), "filling=0.8 leaves no room"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(drum, keys, words):

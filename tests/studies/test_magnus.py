@@ -200,19 +200,19 @@ def test_what_an_engine_says_is_one_line_without_a_traceback(capsys):
     "changes, said",
     [
         (dict(travel=30), "meet its wake"),
-        (dict(settle_travel=3), "leaves nothing to average"),
+        (dict(settle_travel=3), "leaves too little to average"),
         (dict(height=6), "too small for a body"),
         (dict(width=24.5), "whole number of wall disks"),
         (dict(dt_factor=100), "lower dt_factor"),
         (dict(shape="hexagram"), "shape must be one of"),
-        (dict(settle_travel=1.99), "leaves nothing to average"),
-        (dict(travel=0.01, settle_travel=0), "leaves nothing to average"),
+        (dict(settle_travel=1.99), "leaves too little to average"),
+        (dict(travel=0.01, settle_travel=0), "leaves too little to average"),
         (dict(field_spacing=0.3), "must divide 1 d"),
         (dict(field_spacing=0.001, fields=True), "raise it, or leave the fields out"),
         (dict(v0=1e-12, fields=True), "steps, more than"),
         (dict(dt_factor=1e-20, fields=True), "steps, more than"),
         (dict(shape="square", bead_diameter=1e-6), "take larger beads"),
-        (dict(wall_pressure=1e12), "wall_pressure=1e.12 N/m presses grains into each other"),
+        (dict(wall_pressure=1e12), "wall_pressure=1e.12 N/m makes grains overlap"),
     ],
 )
 def test_bad_input_is_a_usage_error_and_nothing_is_written(magnus, tmp_path, changes, said):

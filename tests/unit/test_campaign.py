@@ -226,7 +226,7 @@ def test_a_file_that_is_no_campaign_is_refused(plan, content):
 
 def test_a_script_that_is_no_study_is_refused(plan, tmp_path):
     (tmp_path / "no_study.py").write_text("x = 1\n")
-    with pytest.raises(UsageError, match="campaign.yaml: .*no_study.py makes no STUDY"):
+    with pytest.raises(UsageError, match="campaign.yaml: .*no_study.py defines no STUDY"):
         plan(GOOD.replace(str(TOY), "no_study.py"))
 
 

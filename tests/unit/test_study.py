@@ -32,8 +32,8 @@ SPEED, FORCE = Observable("speed", "m/s", "how fast"), Observable("force", "N", 
     [
         (dict(parameters=dict), "parameters must be a class derived from StudyParameters"),
         (dict(presets={}), "presets must name at least one scale"),
-        (dict(presets={"demo": {"dept": 1}}), "study s: demo sets dept, which are no keys"),
-        (dict(defaults={"widht": 1}), "defaults sets widht, which are no keys"),
+        (dict(presets={"demo": {"dept": 1}}), "study s: demo sets dept, which are not keys"),
+        (dict(defaults={"widht": 1}), "defaults sets widht, which are not keys"),
         (dict(observables=(SPEED,)), "one observable must be the headline, got none"),
         (dict(observables=(FORCE, Observable("speed", "", "", True))), "must be the headline, got force, speed"),
         (dict(observables=(FORCE, SPEED, SPEED)), "observables must have different names, got force, speed, speed"),
@@ -99,7 +99,7 @@ def test_a_run_folder_holds_the_constants_and_family_of_its_study(tmp_path):
 @pytest.mark.parametrize("text", ["x = 1\n", "STUDY = 'magnus'\n"])
 def test_a_file_that_makes_no_study_is_refused(tmp_path, text):
     (tmp_path / "no_study.py").write_text(text)
-    with pytest.raises(UsageError, match="no_study.py makes no STUDY, so it is not a study; see 'A study of your own'"):
+    with pytest.raises(UsageError, match="no_study.py defines no STUDY, so it is not a study; see 'A study of your own'"):
         loaded(tmp_path / "no_study.py")
     assert str(tmp_path) not in sys.path
 
