@@ -148,5 +148,5 @@ def test_a_file_of_yades_loop_is_not_one_of_grain_loop(saved, tmp_path):
 
 
 def test_a_loop_alone_holds_no_scene_to_load(saved):
-    with pytest.raises(RuntimeError, match="holds no scene of YADE's"):
+    with pytest.raises(RuntimeError, match="holds no YADE scene"):
         scene.load(saved[0])

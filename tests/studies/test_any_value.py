@@ -169,9 +169,9 @@ def test_no_combination_of_values_escapes_the_one_line_answer(study):
         ("magnus", ["field_spacing=1e-160"], "field_spacing=1e-160: the size"),
         ("magnus", ["width=60.5", "travel=40"], "whole number"),
         ("magnus", ["height=1e12"], "grains; between 1 and 10000000 are possible"),
-        ("magnus", ["out=~nosuchuser/x"], "out=~nosuchuser/x names a home that is not there"),
+        ("magnus", ["out=~nosuchuser/x"], "out=~nosuchuser/x names a home folder that does not exist"),
         ("magnus", ["out=a/.."], "is not the name of a run folder"),
-        ("magnus", ["out=" + "ü" * 120], "is a name of more than 238 bytes"),
+        ("magnus", ["out=" + "ü" * 120], "is longer than 238 bytes"),
     ],
 )
 def test_what_cannot_be_run_is_refused_before_anything_runs(study, arguments, words):

@@ -103,7 +103,7 @@ def test_a_bed_at_rest_warms_up_above_the_step_of_its_contacts_and_checks_refuse
     assert warmth(bed / pair) < 1e-8
     assert warmth(0.6) > 1e-2  # below the pair's step, and no guard says a word
     assert scene.check_time_step(0.999 * bed, GRAINS, 0.5, 0.1) == pytest.approx(0.999 * bed / pair)
-    with pytest.raises(UsageError, match="a grain with six contacts may swing up: .* lower dt_factor, to 0.* times"):
+    with pytest.raises(UsageError, match="a grain with six contacts may be unstable: .* lower dt_factor, to 0.* times"):
         scene.check_time_step(1.01 * bed, GRAINS, 0.5, 0.1)
 
 

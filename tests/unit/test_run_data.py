@@ -92,12 +92,12 @@ class TestFolder:
         (tmp_path / "full").mkdir()
         (tmp_path / "full/thesis.tex").write_text("years of work")
         for parameters in ({}, {"redo": True}):
-            with pytest.raises(UsageError, match="holds something else"), self.folder(tmp_path / "full", **parameters):
+            with pytest.raises(UsageError, match="holds something other"), self.folder(tmp_path / "full", **parameters):
                 pass
         assert [p.name for p in (tmp_path / "full").iterdir()] == ["thesis.tex"]
 
     def test_a_folder_that_appears_meanwhile_is_not_overwritten(self, tmp_path):
-        with pytest.raises(UsageError, match="complete in .*a.complete"):
+        with pytest.raises(UsageError, match="complete and kept in .*a.complete"):
             with self.folder(tmp_path / "a"):
                 (tmp_path / "a").mkdir()
                 (tmp_path / "a/other").write_text("")

@@ -74,7 +74,7 @@ def test_what_a_run_costs_follows_from_its_parameters():
     cost = Cost(work=lambda p: 1e6 * p.depth, rate=lambda p: 1e4 * p.depth, unit="cell-steps")
     study = made(cost=cost)
     assert cost.core_seconds(study.usual("demo")) == pytest.approx(100)
-    assert help_text(study).endswith("packing aside: smoke 1e+06 cell-steps, 100 s; demo 3e+06 cell-steps, 100 s")
+    assert help_text(study).endswith("without the packing: smoke 1e+06 cell-steps, 100 s; demo 3e+06 cell-steps, 100 s")
     assert Cost(work=lambda p: 30, rate=15).core_seconds(None) == 2 and duration(7200) == "2.0 h"
 
 
