@@ -40,7 +40,7 @@ def opened(path, growing=False):
     return h5py.File(path, "r", libver="latest", swmr=True) if growing else h5py.File(path, "r")
 
 
-# ---- description of a run ---------------------------------------------------------------------------------------------------
+# ---- description of a run --------------------------------------------------------------------------------------------
 
 
 def write_about(file, about):

@@ -36,7 +36,7 @@ ENDED = ("interrupted", "failed", "complete")  # states of a combined run.h5
 WORK_FILES = ("items", ".lock", checkpoint.DATA, "about.h5")
 
 
-# ---- remains of killed runs -------------------------------------------------------------------------------------------
+# ---- remains of killed runs ------------------------------------------------------------------------------------------
 
 
 def settle(run):
@@ -209,7 +209,7 @@ def clear_work_files(path, keep_checkpoint=False):
             file.unlink(missing_ok=True)
 
 
-# ---- resume --------------------------------------------------------------------------------------------------------
+# ---- resume ----------------------------------------------------------------------------------------------------------
 
 
 def adopt(path, out, digest):
