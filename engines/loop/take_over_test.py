@@ -175,7 +175,7 @@ def test_walls_of_grain_loop_keep_a_scene_from_going_back():
     loop = grain_loop.use_grain_loop()
     loop.setWall("y_low", position=-3)
     disks.run(1)
-    with pytest.raises(UsageError, match="no flat walls"):
+    with pytest.raises(UsageError, match="does not have GrainLoop's flat walls"):
         grain_loop.use_yade_loop()
 
 

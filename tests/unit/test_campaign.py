@@ -253,7 +253,7 @@ def test_what_follows_two_dashes_is_snakemakes():
 def test_a_campaign_at_work_keeps_others_out(plan, tmp_path):
     found = plan(GOOD)
     with execution.opened(tmp_path / "out", found):
-        with pytest.raises(UsageError, match="another scripts/campaign is at work"):
+        with pytest.raises(UsageError, match="another scripts/campaign is working"):
             with execution.opened(tmp_path / "out", found):
                 pass
 
@@ -262,7 +262,7 @@ def test_what_a_killed_campaign_left_at_work_keeps_others_out(plan, tmp_path):
     found = plan(GOOD)
     with execution.opened(tmp_path / "out", found) as lock:
         left = subprocess.Popen(["cat"], stdin=subprocess.PIPE, pass_fds=[lock.fileno()])  # waits, as Snakemake would
-    with pytest.raises(UsageError, match="another scripts/campaign is at work"):
+    with pytest.raises(UsageError, match="another scripts/campaign is working"):
         with execution.opened(tmp_path / "out", found):
             pass
     left.communicate()
