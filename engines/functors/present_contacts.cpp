@@ -38,7 +38,7 @@ Answer answer_of(const yade::LawFunctor& law, const yade::Scene& scene)
 		ours += std::string(ours.empty() ? "" : ", ") + Functor::class_name;
 	});
 	if (found) return answer;
-	throw std::invalid_argument("present_contacts knows Graindrive's laws, " + ours + ", got " + law.getClassName());
+	throw std::invalid_argument("present_contacts needs one of Graindrive's laws, " + ours + ", got " + law.getClassName());
 }
 
 struct Extent {
@@ -196,7 +196,7 @@ std::vector<PresentContact> present_contacts(
 	const Answer answer = answer_of(law, scene);
 	const Vector3r periods = scene.isPeriodic ? Vector3r(scene.cell->hSize.colwise().norm()) : Vector3r(Vector3r::Zero());
 	if (scene.isPeriodic && scene.cell->hSize(0, 1) != 0)
-		throw std::invalid_argument("present_contacts knows no cell that is tilted; read O.interactions after a step");
+		throw std::invalid_argument("present_contacts does not support a tilted cell; read O.interactions after a step");
 	std::vector<PresentContact> found;
 	for (const auto& pair : pairs_along_x(extents(scene, periods[0]), periods[0]))
 		if (const auto contact = contact_of(scene, pair, periods, contact_maker, answer)) found.push_back(*contact);

@@ -19,7 +19,7 @@ public:
 	Nearest<2> nearest(const Vec<2>& at) const override
 	{
 		const Nearest<3> found = whole_->nearest({ at[0], at[1], 0 });
-		require(std::abs(found.normal[2]) < steepest, "a solid that disks meet must go on unchanged along z", found.normal,
+		require(std::abs(found.normal[2]) < steepest, "a solid in contact with disks must be uniform along z", found.normal,
 			"that is its normal at the disk; sweep an outline along z, or turn the solid");
 		return { found.distance, unit(Vec<2>{ found.normal[0], found.normal[1] }) };
 	}

@@ -37,7 +37,7 @@ Nearest<D> nearest_of_intersection(const Parts<D>& parts, const Vec<D>& p)
 template <int D>
 void require_parts(const std::string& what, const std::vector<SharedSurface<D>>& parts)
 {
-	require(!parts.empty(), what + " needs at least one part", "none", "give the solids that it is made of");
+	require(!parts.empty(), what + " needs at least one part", "none", "give the solids to combine");
 	for (std::size_t i = 0; i < parts.size(); ++i)
 		require(parts[i] != nullptr, what + " needs a shape for each part", "none for part " + std::to_string(i), "give one");
 }

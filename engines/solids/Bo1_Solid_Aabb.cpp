@@ -12,17 +12,14 @@ namespace graindrive {
 using namespace geometry;
 
 const char* const Bo1_Solid_Aabb::documentation =
-	"Makes the Aabb of a Solid for YADE's collider. Sides without end become +-1e100 m, and just under two periods in a "
-	"periodic\n"
-	"cell.\n\n"
-	"A solid whose rotations are all blocked and that does not spin has the box of its present orientation. Any other has the "
-	"box of\n"
-	"the ball about state.pos in which it turns: the collider does not see that bodies turn. Set the spin of a driven solid "
-	"before\n"
-	"the run, or leave one rotation free.\n"
-	"In a periodic cell, whose edges must be perpendicular, a solid must go on without end along an axis, with\n"
-	"InsertionSortCollider(allowBiggerThanPeriod=True), or be no longer than half of the cell; O.run raises ValueError for "
-	"another.";
+	"Makes the Aabb of a Solid for YADE's collider. Endless sides become +-1e100 m, or just under two periods in a\n"
+	"periodic cell.\n\n"
+	"A solid whose rotations are all blocked and that does not spin gets the box of its present orientation. Any other\n"
+	"solid gets the box of the ball about state.pos that contains it in every orientation, because the collider does not\n"
+	"notice rotations. Set the spin of a driven solid before the run, or leave one rotation free. In a periodic cell,\n"
+	"whose edges must be perpendicular, a solid must either be endless along an axis, with\n"
+	"InsertionSortCollider(allowBiggerThanPeriod=True), or be no longer than half of the cell; for any other O.run raises\n"
+	"ValueError.";
 
 namespace {
 

@@ -13,7 +13,7 @@ public:
 	template <class Visit>
 	static void attributes(Visit&& visit)
 	{
-		visit("recipe", &Solid::recipe, "the words that the surface is made of; see graindrive.solids.surfaces");
+		visit("recipe", &Solid::recipe, "text that defines the surface; see graindrive.solids.surfaces");
 	}
 	Solid() { createIndex(); }
 
