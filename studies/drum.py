@@ -101,7 +101,9 @@ class DrumParameters(StudyParameters):
     )
     froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: from angular_velocity", gt=0)
     filling: float = quantity(0.5, "-", "share of the drum that the bed fills", gt=0)
-    grains: Optional[int] = quantity(None, "-", "number of grains; auto: the paper's, or from filling", ge=1, le=10**7)
+    grains: Optional[int] = quantity(
+        None, "-", "number of grains; auto: the paper's, or from filling", ge=1, le=10**7
+    )
     wall_disks: Optional[int] = quantity(
         None, "-", "number of the wall's disks; auto: the paper's, or as many as fit side by side", ge=1, le=10**6
     )
@@ -109,7 +111,9 @@ class DrumParameters(StudyParameters):
     restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
     stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
     start_turn: float = quantity(180.0, "degrees", "least rotation of the drum before averages begin", gt=0)
-    turn: float = quantity(360.0, "degrees", "rotation of the drum during the averages", gt=0, lever=Lever(360, "lower"))
+    turn: float = quantity(
+        360.0, "degrees", "rotation of the drum during the averages", gt=0, lever=Lever(360, "lower")
+    )
     field_spacing: Optional[float] = quantity(
         None, "d", "side of the fields' square bins; auto: 0.6, or 1.2 for drums over 200 d", gt=0, le=5
     )
@@ -370,7 +374,9 @@ def check_room(p):
         )
     gap = p.drum_diameter * np.sin(np.pi / max(p.wall_count, 2)) - 1
     if p.wall_count > (most := 2 * round(np.pi * p.drum_diameter)):
-        raise UsageError(f"wall_disks={p.wall_count} is more than twice the number that fits side by side; give at most {most}")
+        raise UsageError(
+            f"wall_disks={p.wall_count} is more than twice the number that fits side by side; give at most {most}"
+        )
     if gap > WIDEST_GAP:
         raise UsageError(
             f"wall_disks={p.wall_count} leaves gaps of {gap:.3g} d, through which grains escape; give at least"

@@ -121,9 +121,7 @@ STUDY = Study(
     parameters=ExtremesParameters,
     presets=PRESETS,
     observables=(
-        Observable(
-            "error_over_bound", "-", "|measured - expected|/bound; above 1 the answer is wrong", headline=True
-        ),
+        Observable("error_over_bound", "-", "|measured - expected|/bound; above 1 the answer is wrong", headline=True),
         Observable("measured", "-", "the number that the case measures, a ratio or an error"),
         Observable("expected", "-", "the number that the case's source predicts"),
         Observable("bound", "-", "how far apart they may be"),

@@ -69,15 +69,21 @@ SAMPLE_EVERY = 10  # steps between two samples of the forces
 BLOCK_TRAVEL = 0.25  # d of travel between two rows of the series
 POINTS = 64  # of the stress by angle, with a Gaussian of 8 degrees (A4)
 FIELD_REACH = 20  # d around the body, where the box is as large
-LEAST_PERIOD = 4.1  # diameters of the largest grain that a period must hold: three, and the margin of the neighbour search
-AWAY = 2.0  # least distance: in D between the body and its wake at the end, in d between the body and lid, surface or base
+LEAST_PERIOD = (
+    4.1  # diameters of the largest grain that a period must hold: three, and the margin of the neighbour search
+)
+AWAY = (
+    2.0  # least distance: in D between the body and its wake at the end, in d between the body and lid, surface or base
+)
 USUAL_DRAG = 10.0  # C_d of the paper, to estimate before a run whether base and lid can hold the bed
 LEAST_WINDOW = 3.0  # d of travel after the paper's transient
 MOST_TRAVEL = 40.0  # D, the paper's
 RATE = (
     7e6  # particle-steps per second of one core: 26,000 stirred grains, 1.3e9 particle-steps in 180 s of processor time
 )
-OVERLAP_KEYS = "lower dt_factor, speed or lid_density, or raise largest_overlap"  # advice when the overlap guard stops a run
+OVERLAP_KEYS = (
+    "lower dt_factor, speed or lid_density, or raise largest_overlap"  # advice when the overlap guard stops a run
+)
 
 
 class LiftParameters(StudyParameters):
@@ -85,16 +91,22 @@ class LiftParameters(StudyParameters):
 
     unit_system: ClassVar[str] = quantities.SI
 
-    shape: str = quantity("cylinder", "-", "cylinder, or a file: outline swept along y (.csv, .wkt), distance function (.py)")
+    shape: str = quantity(
+        "cylinder", "-", "cylinder, or a file: outline swept along y (.csv, .wkt), distance function (.py)"
+    )
     cylinder_diameter: float = quantity(3.3, "d", "D of the cylinder", ge=1, le=1000)
     depth: float = quantity(52.8, "d", "depth of the axis below the surface of the bed, without the lid", gt=0)
-    lid_density: float = quantity(100.0, "rho_g", "density of the lid's grains over that of the others; 0: no lid", ge=0)
+    lid_density: float = quantity(
+        100.0, "rho_g", "density of the lid's grains over that of the others; 0: no lid", ge=0
+    )
     bulk_gravity: bool = quantity(True, "-", "gravity acts on all grains; 0: only on the lid")
     lid_turns: bool = quantity(False, "-", "grains of the lid may turn")
     speed: float = quantity(0.1, "m/s", "U_0", gt=0, le=20, lever=Lever(0.1, "higher"))
     frame: Literal["bed", "cylinder"] = quantity("bed", "-", "what rests: base and bed, or the cylinder")
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    polydispersity: float = quantity(0.0, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9)
+    polydispersity: float = quantity(
+        0.0, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9
+    )
     width: float = quantity(140.0, "d", "period of the box in x", gt=0, lever=Lever(140, "lower"))
     breadth: float = quantity(10.0, "d", "period of the box in y", gt=0, lever=Lever(10, "lower"))
     height: float = quantity(120.0, "d", "height of the bed", gt=0, lever=Lever(120, "lower"))

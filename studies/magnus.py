@@ -58,10 +58,15 @@ BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
 LOOK_EVERY = 50  # blocks between two estimates of the error
 CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
 PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
-FIELD_REACH = 10, 2  # reach around the body: d, or diameters of a large body; behind it the fields reach 1.5 times as far
+FIELD_REACH = (
+    10,
+    2,
+)  # reach around the body: d, or diameters of a large body; behind it the fields reach 1.5 times as far
 FEWEST_BLOCKS = 200  # in the steady window before its error can stop the run
 LEAST_WINDOW = 0.5  # d of travel to average; with less no error can be estimated
-OVERLAP_KEYS = "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # advice of the overlap guard
+OVERLAP_KEYS = (
+    "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # advice of the overlap guard
+)
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((0.352, 0.818), (313e6, 88e6))  # area fraction, particle-steps per second of one core (README)
 
@@ -75,10 +80,16 @@ class MagnusParameters(intruder.BodyParameters):
     v0: float = quantity(0.25, "m/s", "speed of the body along x", gt=0, le=20)
     spin_ratio: float = quantity(5.0, "-", "Omega = omega_0 R/V0, positive counter-clockwise", ge=-1000, le=1000)
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    width: float = quantity(300.0, "d", "length of the channel along x, a whole number", gt=0, lever=Lever(300, "lower"))
+    width: float = quantity(
+        300.0, "d", "length of the channel along x, a whole number", gt=0, lever=Lever(300, "lower")
+    )
     height: float = quantity(200.0, "d", "height of the channel, including the walls", gt=0, lever=Lever(200, "lower"))
     travel: Optional[float] = quantity(
-        None, "d", "distance that the body travels, at most (auto) the channel's length", gt=0, lever=Lever(None, "lower")
+        None,
+        "d",
+        "distance that the body travels, at most (auto) the channel's length",
+        gt=0,
+        lever=Lever(None, "lower"),
     )
     settle_travel: float = quantity(30.0, "d", "least travel before the averages begin", ge=0)
     until_error: float = quantity(
@@ -90,12 +101,24 @@ class MagnusParameters(intruder.BodyParameters):
     intruder_diameter: float = quantity(5.0, "d", "diameter of the disk, or longer side of another shape", ge=1)
     shape: str = quantity("disk", "-", "disk, or another shape made of beads: square, tall, wide, triangle, or a file")
     bead_diameter: float = quantity(0.5, "d", "bead diameter of a shape other than the disk", gt=0)
-    polydispersity: float = quantity(0.1, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9)
-    wall_pressure: float = quantity(0.0, "N/m", "force per length that pushes the walls inwards; 0: the walls are fixed", ge=0)
+    polydispersity: float = quantity(
+        0.1, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9
+    )
+    wall_pressure: float = quantity(
+        0.0, "N/m", "force per length that pushes the walls inwards; 0: the walls are fixed", ge=0
+    )
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing", watches=True)
-    field_spacing: float = quantity(0.05, "d", "side of the fields' square bins; it must divide 1 d", gt=0, le=1, watches=True)
+    field_spacing: float = quantity(
+        0.05, "d", "side of the fields' square bins; it must divide 1 d", gt=0, le=1, watches=True
+    )
     field_samples: int = quantity(
-        1000, "-", "number of moments in the fields' averages", ge=1, le=10**6, watches=True, lever=Lever(1000, "lower", 4)
+        1000,
+        "-",
+        "number of moments in the fields' averages",
+        ge=1,
+        le=10**6,
+        watches=True,
+        lever=Lever(1000, "lower", 4),
     )
     frames: int = quantity(
         1,

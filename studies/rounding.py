@@ -128,12 +128,18 @@ def check(p):
             f"loop={p.loop} precision={p.precision}: the rounding study runs both loops in every precision; leave these keys out"
         )
     if p.exports:
-        raise UsageError(f"export={','.join(p.exports)} needs pictures of grains; the rounding study keeps none; leave it out")
+        raise UsageError(
+            f"export={','.join(p.exports)} needs pictures of grains; the rounding study keeps none; leave it out"
+        )
     grains, ratio = p.taken()["grains"], time_step(p) / critical_step(p)
     if p.scene == "chaotic" and math.isqrt(grains) ** 2 != grains:
-        raise UsageError(f"the chaotic scene begins with grains on a square lattice: give a square number, got grains={grains}")
+        raise UsageError(
+            f"the chaotic scene begins with grains on a square lattice: give a square number, got grains={grains}"
+        )
     if p.scene == "chaotic" and grains < 9:
-        raise UsageError(f"grains={grains} must be at least 9 in the chaotic scene, or disks would meet their own images")
+        raise UsageError(
+            f"grains={grains} must be at least 9 in the chaotic scene, or disks would meet their own images"
+        )
     if ratio >= 0.5:
         raise UsageError(
             f"dt_factor={p.dt_factor:g} gives a time step of {ratio:.2g} times the critical one; this ratio must stay below 0.5"

@@ -71,9 +71,7 @@ class ShearParameters(StudyParameters):
     unit_system: ClassVar[str] = quantities.GRAIN
 
     inertial_number: float = quantity(0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10)
-    shear_rate: Optional[float] = quantity(
-        None, "sqrt(g/d)", "dv_x/dy; auto: from inertial_number and pressure", gt=0
-    )
+    shear_rate: Optional[float] = quantity(None, "sqrt(g/d)", "dv_x/dy; auto: from inertial_number and pressure", gt=0)
     pressure: float = quantity(25.0, "rho g d", "P, the pressure that the height adapts to", gt=0)
     area_fraction: float = quantity(
         0.0, "-", "keep this area fraction constant; 0: keep the pressure constant", ge=0, le=0.9
@@ -228,9 +226,7 @@ def complaint(p, found):
     """Return a sentence on why the averages do not describe the steady flow that was asked for; "" if they do."""
     pressure, error = found["mean_pressure"], found["mean_pressure_err"]
     if not p.area_fraction and not abs(pressure - p.pressure) <= max(HELD_WITHIN * p.pressure, 3 * error):
-        return (
-            f"the cell did not reach its pressure: mean_pressure={pressure:.3g} differs from pressure={p.pressure:g}"
-        )
+        return f"the cell did not reach its pressure: mean_pressure={pressure:.3g} differs from pressure={p.pressure:g}"
     return "" if found["steady"] else "the test finds tau or phi unsteady up to the end of the run"
 
 

@@ -100,9 +100,16 @@ class WiggleParameters(intruder.BodyParameters):
     )
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
     bead_spacing: float = quantity(
-        1.0, "bead diameters", "largest distance between beads along the outline", gt=0, le=1, lever=Lever(0.5, "higher")
+        1.0,
+        "bead diameters",
+        "largest distance between beads along the outline",
+        gt=0,
+        le=1,
+        lever=Lever(0.5, "higher"),
     )
-    intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body, by default that of a 7 d disk", gt=0)
+    intruder_mass: float = quantity(
+        np.pi * 7**2 / 4, "rho d^2", "mass of the body, by default that of a 7 d disk", gt=0
+    )
     fields: bool = quantity(
         False, "-", "also average area fraction, velocity and pressure around the body, by phase", watches=True
     )

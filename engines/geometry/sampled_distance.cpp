@@ -175,8 +175,8 @@ Nearest<D> SampledDistance<D>::inside(const Vec<D>& at) const
 template <int D>
 Nearest<D> SampledDistance<D>::beyond(const Vec<D>& at, const Vec<D>& in_grid) const
 {
-	require(margin_ > 0, "a sampled distance is known only inside its grid if the solid reaches the grid's outer layer",
-		at, "sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
+	require(margin_ > 0, "a sampled distance is known only inside its grid if the solid reaches the grid's outer layer", at,
+		"sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
 	const double way = norm(at - in_grid);
 	return { way + margin_, (at - in_grid) / way };
 }

@@ -135,7 +135,7 @@ Surroundings of(const yade::Scene& scene)
 
 std::string difference(const BodyRecord& saved, const BodyRecord& here)
 {
-	if (saved.exists != here.exists) return saved.exists ? "is not in the scene" : "was not there";
+	if (saved.exists != here.exists) return saved.exists ? "is not in the scene" : "is not in the checkpoint";
 	if (saved.clump != here.clump) return "is in another clump";
 	if (saved.radius != here.radius) return "has another radius";
 	if (saved.surface != here.surface) return "has another surface";

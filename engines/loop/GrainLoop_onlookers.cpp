@@ -34,12 +34,12 @@ void GrainLoop::meet_engines()
 		if (engine->dead && is_rival(name)) continue;
 		if (is_rival(name))
 			throw std::runtime_error(
-				"GrainLoop takes the place of collider, InteractionLoop and NewtonIntegrator; O.engines also holds " + name +
+				"GrainLoop replaces collider, InteractionLoop and NewtonIntegrator, but O.engines also holds " + name +
 				": remove it");
 		const Reach reach = reach_of(*engine, trusted);
 		if (reach == Reach::unknown && !engine->dead)
 			throw std::runtime_error("GrainLoop does not know what " + name +
-									 " needs: it may read interactions, which YADE does not keep here; remove it "
+									 " needs: it may read interactions, which GrainLoop does not keep; remove it "
 									 "from O.engines, use YADE's loop, or add its name to GrainLoop.trusted if it only reads and "
 									 "changes bodies and adds "
 									 "forces");

@@ -146,7 +146,7 @@ void GrainLoop::set_load(int id, const Vector3r& force)
 		throw std::invalid_argument(
 			"GrainLoop.setLoad: body " + std::to_string(id) + " does not move; free one of its directions first");
 	if (dimensions == 2 && force[2] != 0)
-		throw std::invalid_argument("GrainLoop.setLoad: a load on a disk lies in the plane, got F_z = " +
+		throw std::invalid_argument("GrainLoop.setLoad: a load on a disk must lie in the plane, got F_z = " +
 									std::to_string(force[2]) + " N; leave it out, or set GrainLoop.dimensions to 3");
 	for (std::size_t k = 0; k + 3 < loads.size(); k += 4)
 		if (int(loads[k]) == id) {

@@ -192,7 +192,7 @@ void Stepper<2>::touches_on(std::size_t b, std::vector<Touch<2>>& touches) const
 template <>
 void Stepper<3>::touches_on(std::size_t b, std::vector<Touch<3>>& touches) const
 {
-	if (!body_forces_known) throw std::logic_error("contacts on a body of spheres are known while a step is under way");
+	if (!body_forces_known) throw std::logic_error("contacts on a body of spheres are known only during a step");
 	const std::uint32_t first = state.n_free + state.first_member[b], end = state.n_free + state.first_member[b + 1];
 	const auto add = [&](std::uint32_t at, const Contact<3>& c, double side) {
 		const Vec<3> n = side * c.n;

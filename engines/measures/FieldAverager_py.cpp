@@ -119,8 +119,8 @@ template <int axis>
 np::ndarray coordinates(const Averager& averager)
 {
 	if (!averager.has_points_along(axis))
-		throw std::invalid_argument(std::string("FieldAverager has no points along ") + char('x' + axis) +
-									"; its axes are " + axes(averager));
+		throw std::invalid_argument(
+			std::string("FieldAverager has no points along ") + char('x' + axis) + "; its axes are " + axes(averager));
 	std::vector<Real> values(averager.points(axis));
 	for (std::size_t k = 0; k < values.size(); ++k) values[k] = averager.low[axis] + (Real(k) + 0.5) * averager.spacing;
 	return seam::array_of(values);

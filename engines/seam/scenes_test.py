@@ -33,7 +33,8 @@ def start(x=0.0, **changes):
 @pytest.mark.parametrize("cls", CLASSES)
 def test_an_unknown_keyword_lists_the_known_ones(cls):
     with pytest.raises(
-        AttributeError, match=f"{cls.__name__} has no attribute 'amplitud'; did you mean '.+'\\? Its attributes are .*label"
+        AttributeError,
+        match=f"{cls.__name__} has no attribute 'amplitud'; did you mean '.+'\\? Its attributes are .*label",
     ):
         cls(amplitud=1)
 

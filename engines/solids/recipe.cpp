@@ -136,8 +136,8 @@ bool add_kind(const std::string& name, ReadSurface read)
 {
 	const bool is_word = !name.empty() && std::none_of(name.begin(), name.end(), is_space);
 	require(is_word, "a kind of surface needs one word as its name", "'" + name + "'", "give one such as torus");
-	require(table().emplace(name, read).second, "a kind of surface needs a new name", "'" + name + "'",
-		"taken are " + all_kinds());
+	require(
+		table().emplace(name, read).second, "a kind of surface needs a new name", "'" + name + "'", "taken are " + all_kinds());
 	return true;
 }
 

@@ -76,7 +76,9 @@ class StudyParameters(BaseModel):
     precision: Literal["double", "single"] = quantity(
         "double", "-", "number type of contact forces in GrainLoop", lever=Lever("double", ("single",))
     )
-    dt_factor: float = quantity(1.0, "-", "time step, as a multiple of the study's own choice", gt=0, lever=Lever(1.0, "higher"))
+    dt_factor: float = quantity(
+        1.0, "-", "time step, as a multiple of the study's own choice", gt=0, lever=Lever(1.0, "higher")
+    )
     accuracy: str = quantity(
         "",
         "-",

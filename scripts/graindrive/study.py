@@ -110,7 +110,9 @@ class Study:
         for part, values in {**self.presets, "defaults": self.defaults}.items():
             unknown = sorted(set(values) - set(self.parameters.__fields__))
             if unknown:
-                raise ValueError(f"study {self.name}: {part} sets {', '.join(unknown)}, which are not keys of the study")
+                raise ValueError(
+                    f"study {self.name}: {part} sets {', '.join(unknown)}, which are not keys of the study"
+                )
 
     @property
     def headline(self):

@@ -155,7 +155,10 @@ def test_speed_is_given_in_either_way(drum):
         (dict(filling=0.01, drum_diameter=40), r"11 grains make a bed 1.3 d deep .* at least 3 d"),
         (dict(grains=1), "1 grains make a bed"),
         (dict(grains=5, filling=1e-9), "5 grains make a bed"),
-        (dict(model="both", grains=4000), "grains=4000 fills 0.26 of the drum, but .* filling=0.5: .* or give filling=0.26"),
+        (
+            dict(model="both", grains=4000),
+            "grains=4000 fills 0.26 of the drum, but .* filling=0.5: .* or give filling=0.26",
+        ),
         (dict(start_turn=0.01), "start_turn=0.01 and turn=360 degrees differ too much"),
         (dict(turn=0.02), "differ too much: rows that are short enough for the smaller make .* raise the smaller"),
         (dict(pressure_solver="foo"), "pressure_solver=foo is not known; leave it empty or take one of multigrid"),

@@ -117,10 +117,16 @@ def test_disks_that_never_touch_have_no_friction(shear):
 @pytest.mark.parametrize(
     "changes, words",
     [
-        (dict(settle_strain=2.0), "settle_strain=2 leaves too little of strain=1 to average, which takes at least 4 rows of"),
+        (
+            dict(settle_strain=2.0),
+            "settle_strain=2 leaves too little of strain=1 to average, which takes at least 4 rows of",
+        ),
         (dict(settle_strain=0.95), "settle_strain=0.95 leaves too little of strain=1"),
         (dict(strain=0.05, settle_strain=0), "leaves too little of strain=0.05 to average"),
-        (dict(area_fraction=0.8, shear_rate=1e30), r"at shear_rate=1e[+]30 the shortest row of the series, 5 steps, .* lower dt_factor or the shear"),
+        (
+            dict(area_fraction=0.8, shear_rate=1e30),
+            r"at shear_rate=1e[+]30 the shortest row of the series, 5 steps, .* lower dt_factor or the shear",
+        ),
         (dict(inertial_number=10), r"has a strain of 0.075, more than 0.05"),
         (
             dict(area_fraction=0.3, shear_rate=1.0),

@@ -99,7 +99,9 @@ def test_a_run_folder_holds_the_constants_and_family_of_its_study(tmp_path):
 @pytest.mark.parametrize("text", ["x = 1\n", "STUDY = 'magnus'\n"])
 def test_a_file_that_makes_no_study_is_refused(tmp_path, text):
     (tmp_path / "no_study.py").write_text(text)
-    with pytest.raises(UsageError, match="no_study.py defines no STUDY, so it is not a study; see 'A study of your own'"):
+    with pytest.raises(
+        UsageError, match="no_study.py defines no STUDY, so it is not a study; see 'A study of your own'"
+    ):
         loaded(tmp_path / "no_study.py")
     assert str(tmp_path) not in sys.path
 

@@ -149,7 +149,8 @@ def pour(recipe):
     for id_, (vx, vy) in zip(ids, stir):
         O.bodies[id_].state.vel = Vector3(float(vx), float(vy), 0)
     print(
-        f"pouring {len(ids)} grains into a drum until each has less than {recipe.rest:g} m g d of kinetic energy", file=sys.stderr
+        f"pouring {len(ids)} grains into a drum until each has less than {recipe.rest:g} m g d of kinetic energy",
+        file=sys.stderr,
     )
     scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=packing.LARGEST_OVERLAP)
     O.dt = recipe.dt

@@ -22,11 +22,11 @@ from ..scenes.yade_march import YadeMarch
 RECIPE = 1  # version of the recipe; increase it when the same parameters give a different bed
 BED_FRACTION = 0.59  # volume fraction from which the number of grains is computed
 INSERTION_FRACTION = 0.33
-LARGEST_OVERLAP = 0.3  # [R] largest allowed overlap while a bed settles: a tall column that lands loads its foot heavily
-LOOK_EVERY = 100  # steps between two checks of a bed that comes to rest
-LOAD_ERROR = (
-    1e-3  # allowed error of the forces on base and solid, over the weight; at least the weight of one grain, which may still roll
+LARGEST_OVERLAP = (
+    0.3  # [R] largest allowed overlap while a bed settles: a tall column that lands loads its foot heavily
 )
+LOOK_EVERY = 100  # steps between two checks of a bed that comes to rest
+LOAD_ERROR = 1e-3  # allowed relative error of the forces on base and solid, at least the weight of one grain, which may still roll
 POURED_ERROR = 5e-3  # the same while a bed is poured
 LOOKS_BORNE = 3  # number of successive checks in which the error must be allowed
 MOST_LOOKS = 1000
@@ -251,7 +251,10 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
             f" differ from the weight by {state.error:.2g} of it; lower dt_factor or lid_density"
         )
     space.halt()
-    print(f"{label}: {len(ids)} grains at rest, base and body carry the weight to within {state.error:.1e}", file=sys.stderr)
+    print(
+        f"{label}: {len(ids)} grains at rest, base and body carry the weight to within {state.error:.1e}",
+        file=sys.stderr,
+    )
     return state.error
 
 

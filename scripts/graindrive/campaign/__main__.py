@@ -29,9 +29,13 @@ def read_arguments(arguments):
     at = arguments.index("--") if "--" in arguments else len(arguments)
     parser = argparse.ArgumentParser(prog="scripts/campaign", allow_abbrev=False)
     parser.add_argument("file", type=Path, help="the campaign's YAML file")
-    parser.add_argument("-n", "--dry-run", action="store_true", help="only list the runs that would be made, and their cost")
+    parser.add_argument(
+        "-n", "--dry-run", action="store_true", help="only list the runs that would be made, and their cost"
+    )
     parser.add_argument("--report", action="store_true", help="start no run; only rebuild table and report")
-    parser.add_argument("--cores", type=int, default=os.cpu_count(), help="number of runs at a time; default: all processors")
+    parser.add_argument(
+        "--cores", type=int, default=os.cpu_count(), help="number of runs at a time; default: all processors"
+    )
     parser.add_argument("--out", type=Path, help="the campaign's folder; default: named after the file")
     options = parser.parse_args(arguments[:at])
     options.snakemake = arguments[at + 1 :]

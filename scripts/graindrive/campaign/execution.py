@@ -43,7 +43,9 @@ def opened(folder, plan):
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UsageError(f"another scripts/campaign is working in {folder}; wait for it, or give another --out") from None
+            raise UsageError(
+                f"another scripts/campaign is working in {folder}; wait for it, or give another --out"
+            ) from None
         plan_json.write(folder, plan, PROGRAM)
         yield lock
 

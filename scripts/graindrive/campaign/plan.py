@@ -131,7 +131,9 @@ def planned_runs(path, content, study):
             run = planned_run(place, values, study)
             known = runs.setdefault(run.name, run)
             if known.parameters.identity() != run.parameters.identity():
-                raise UsageError(f"{place}: two different runs got the same name {run.name}; give one of them another seed")
+                raise UsageError(
+                    f"{place}: two different runs got the same name {run.name}; give one of them another seed"
+                )
             known.sweeps += [] if sweep in known.sweeps else [sweep]
     return list(runs.values())
 

@@ -67,7 +67,9 @@ def row_of(text, line):
     found = {}
     for number, words in rows:
         if len(words) != len(bare):
-            raise ValueError(f"line {number} has {len(words)} values for {len(bare)} columns; write * for a default value")
+            raise ValueError(
+                f"line {number} has {len(words)} values for {len(bare)} columns; write * for a default value"
+            )
         if "=" in words and not found:
             raise ValueError(f"'=' in line {number} has no value above it to repeat")
         found = {heading: found[heading] if word == "=" else word for heading, word in zip(headings[1], words)}

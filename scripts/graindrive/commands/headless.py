@@ -90,7 +90,10 @@ def guarded(action, name):
             traceback.print_exc()
         print(f"{name}: failed: {type(error).__name__}: {one_line(error, 500)}", file=sys.stderr)
         if is_full(error):
-            print(f"{name}: failed: the disk or the quota is full; free some space, then continue with resume=1", file=sys.stderr)
+            print(
+                f"{name}: failed: the disk or the quota is full; free some space, then continue with resume=1",
+                file=sys.stderr,
+            )
         return 1
 
 

@@ -46,9 +46,7 @@ MOST_FILLING, LEAST_DEPTH = 0.9, 6  # of the drum; of the bed, in cells
 MOST_CROSSED = (
     0.5  # cells that may be crossed in a step, those of the grid's corners that turn with the wall among them
 )
-STIFFEST = (
-    1e8  # largest eta dt/(rho cell^2): from ten times this value on round-off is visible in the velocities
-)
+STIFFEST = 1e8  # largest eta dt/(rho cell^2): from ten times this value on round-off is visible in the velocities
 # Cell-steps per second of one core at continuum_dt=0.02, by cells across: on finer grids the viscosity's solver works more.
 RATES = ((75, 150, 300), (3e6, 2.2e6, 1.3e6))
 PART = "continuum"  # of a run with both models, in its checkpoints

@@ -171,7 +171,9 @@ def common_material(*properties):
                     f" that of body {first.id} is {there:g}; make them equal"
                 )
     if first is None:
-        raise UsageError("GrainLoop takes friction and stiffness from the bodies' materials, but O.bodies holds no material")
+        raise UsageError(
+            "GrainLoop takes friction and stiffness from the bodies' materials, but O.bodies holds no material"
+        )
     return first.mat
 
 

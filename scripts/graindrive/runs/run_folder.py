@@ -243,7 +243,9 @@ class RunFolder:
             self.close()
             kept = run_remains.keep(self.path, self.out, ending)
         self.say(
-            f"the data so far are kept in {kept}" if kept else "this run got no further than earlier remains, which are kept"
+            f"the data so far are kept in {kept}"
+            if kept
+            else "this run got no further than earlier remains, which are kept"
         )
 
     def finish_data(self, state):

@@ -12,7 +12,9 @@ from ..base.errors import UsageError, one_line
 from .run_data import UNREADABLE
 
 LONGEST_NAME = 255 - len(".interrupted-9999")  # bytes; file systems allow 255
-HIDDEN_NAME = re.compile(r"\..+\.(part|old|gone)-\d+")  # names that `hidden` makes; such folders are removed after the run
+HIDDEN_NAME = re.compile(
+    r"\..+\.(part|old|gone)-\d+"
+)  # names that `hidden` makes; such folders are removed after the run
 LONGEST_SHOWN = 300  # characters of a path in a message
 
 
@@ -74,7 +76,9 @@ def refuse_what_is_there(run):
         set_aside(out)
         return
     if problem:
-        raise UsageError(f"{given} holds a damaged run: {problem}; redo=1 makes the run again and keeps the damaged one")
+        raise UsageError(
+            f"{given} holds a damaged run: {problem}; redo=1 makes the run again and keeps the damaged one"
+        )
     if stored_digest(out) is None:
         raise UsageError(f"{given} holds something other than a complete run; give another out= or move it away")
     if stored_digest(out) != run.parameters.digest():
@@ -200,7 +204,9 @@ def take_place(path, out, digest):
             os.rename(old, out)
         kept = free_name(out, "complete")
         os.rename(path, kept)
-        raise UsageError(f"{out} cannot be replaced ({error.strerror}); this run is complete and kept in {kept}") from None
+        raise UsageError(
+            f"{out} cannot be replaced ({error.strerror}); this run is complete and kept in {kept}"
+        ) from None
     whole_files.sync(out.parent)
     if old.exists():
         remove(old, out)

@@ -84,9 +84,7 @@ def finish_killed(run, part):
         draw(part, run.figure if study == run.study else None, formats)
         take_name(part, run.out, digest)
         say(run, f"a killed run was complete except for its name; it is now in {run.out}")
-    except (
-        Exception
-    ) as error:  # a figure may raise any error; the error for a taken place names the folder of the run
+    except Exception as error:  # a figure may raise any error; the error for a taken place names the folder of the run
         say(run, f"a killed run was complete, but cannot be finished: {type(error).__name__}: {one_line(error, 200)}")
     return not part.exists()
 
