@@ -36,7 +36,7 @@ struct FlowSettings {
 	std::string pressure_solver;  ///< "" for the default
 };
 
-/// All that decides how a flow goes on.
+/// The complete state of a flow.
 struct FlowState {
 	double time = 0;
 	long steps = 0;
@@ -93,7 +93,7 @@ public:
 
 	/// The largest time step that the explicit part of the viscosity allows; infinite with `Viscosity::full`.
 	double stable_step() const;
-	/// Heard from the next step on. @throws std::invalid_argument as the constructor
+	/// Applies from the next step on. @throws std::invalid_argument as the constructor
 	void set_time_step(double dt);
 
 	const Grid& grid() const { return g; }

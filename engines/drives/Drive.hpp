@@ -102,7 +102,7 @@ protected:
 	}
 
 private:
-	/// Origin and time belong to one scene: in the next one, after O.reset, the drive begins anew.
+	/// Origin and time belong to one scene: in the next one, after O.reset, the drive starts again.
 	void settle_in()
 	{
 		const auto same = [](const auto& a, const auto& b) { return !a.owner_before(b) && !b.owner_before(a); };

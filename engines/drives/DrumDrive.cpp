@@ -58,7 +58,7 @@ void DrumDrive::begin_leg()
 	Drive::begin_leg(settings());
 }
 
-/// Sends one body along its chord; answers the grains' force on it, with the torque about the axis point.
+/// Moves one body along its chord; returns the grains' force on it, with the torque about the axis point.
 Wrench DrumDrive::move(std::size_t index, const Turn& turn)
 {
 	yade::State& state = state_of(bodies[index]);

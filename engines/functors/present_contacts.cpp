@@ -146,7 +146,7 @@ geometry::Vec<3> middle_of(const geometry::Bounds<3>& box)
 	return middle;
 }
 
-/// True unless a point is farther than `reach` from the bounds, where a surface need not answer.
+/// False if a point is farther than `reach` from the bounds, so that the surface need not be evaluated.
 bool is_near(const geometry::Bounds<3>& box, const geometry::Vec<3>& point, Real reach)
 {
 	for (int axis = 0; axis < 3; ++axis)

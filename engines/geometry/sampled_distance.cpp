@@ -1,4 +1,4 @@
-/// Cubic interpolation, the checks of samples, and what is said of points outside the grid.
+/// Cubic interpolation, the checks of samples, and results for points outside the grid.
 #include "engines/geometry/sampled_distance.hpp"
 
 #include "engines/geometry/refuse.hpp"

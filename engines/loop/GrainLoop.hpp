@@ -82,18 +82,18 @@ public:
 	void sync();
 	/// The same, unless they are true already: what others have written into them since is not lost.
 	void show_bodies();
-	/// Python may ask while the loop runs in the background: whoever holds this finds it between two steps.
+	/// Python may call while the loop runs in the background: holding this lock guarantees that the loop is between two steps.
 	using Turn = std::unique_lock<std::recursive_mutex>;
 	Turn take_turn() const;
 	/// For velocities of O.bodies that belong to the step itself, not half a step behind: takes the first step with half a kick.
 	void begin_on_step();
-	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
+	/// Reads the scene from YADE's bodies again at the next step, keeping the springs of contacts that persist.
 	void read();
 	/// What `build` demands of YADE's scene, before the first step.
 	void require_scene();
 	/// Writes loop, bodies and the engines of O.engines that are ours into one file; `saved_scene` is what O.save wrote, or nothing.
 	void save_checkpoint(const std::string& path, const std::string& saved_scene);
-	/// Goes on from such a file in the same scene, built anew or loaded. Changes nothing where it refuses the file.
+	/// Continues from such a file in the same scene, built again or loaded. Changes nothing if it refuses the file.
 	/// @throws std::runtime_error naming the file and what is wrong with it, or what of the scene does not fit
 	void restore_checkpoint(const std::string& path);
 	/// What O.save wrote when the file was made; empty if nothing.
@@ -103,7 +103,7 @@ public:
 	void remove_wall(loop::Side side);
 	std::vector<loop::Wall<3>> walls() const;
 	loop::Side side_named(const std::string& name) const;
-	/// A constant force on a body's free directions, until it is set anew.
+	/// Sets a constant force on a body's free directions.
 	void set_load(int body, const Vector3r& force);
 	/// The running loop; made from YADE's bodies if there is none yet.
 	loop::Mirror& running();

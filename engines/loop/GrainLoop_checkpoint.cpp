@@ -49,7 +49,7 @@ struct CellRecord {
 	Real numbers[7 * 9] = {};
 };
 
-/// visit(matrix) for all of a cell that decides how it goes on.
+/// Calls visit(matrix) for the complete state of a cell.
 template <class ACell, class Visit>
 void each_matrix(ACell& cell, Visit&& visit)
 {

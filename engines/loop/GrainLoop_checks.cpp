@@ -1,4 +1,4 @@
-/// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, disks that meet across an axis left free.
+/// GrainLoop's checks: numbers out of range, a cell with another period, missing bodies, contacts across a non-periodic axis.
 #include <algorithm>
 #include <cmath>
 #include <set>

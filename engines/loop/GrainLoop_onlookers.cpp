@@ -48,7 +48,7 @@ void GrainLoop::meet_engines()
 	met_engines_ = here, met_dead_ = dead;
 }
 
-/// After a step: will somebody look at bodies before the next one? Then they must be true.
+/// After a step: true if other code may read bodies before the next step, so that they must be up to date.
 bool GrainLoop::someone_may_look() const
 {
 	if (last_step_of_run() || (syncEvery > 0 && (scene->iter + 1) % syncEvery == 0)) return true;

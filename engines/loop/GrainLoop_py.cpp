@@ -9,7 +9,7 @@ yade::Scene* scene_of_yade() { return py::extract<yade::Scene*>(py::import("yade
 
 namespace {
 
-/// YADE's scene, in which the loop must stand: another one answers for bodies that it does not move.
+/// YADE's scene, which must contain this loop: a loop of another scene does not move the bodies of this one.
 yade::Scene* scene_with(const GrainLoop& loop)
 {
 	yade::Scene* scene = scene_of_yade();

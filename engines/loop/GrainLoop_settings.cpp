@@ -32,8 +32,8 @@ void GrainLoop::assigned(const std::string& name)
 	settings_changed_ = true;
 }
 
-/// Goes on with settings that Python changed: what the kernels use is changed in the running loop, what decides who is a body by
-/// reading the scene anew.
+/// Applies settings that Python changed: settings of the kernels are changed in the running loop; settings that decide which grains
+/// are bodies need a new reading of the scene.
 void GrainLoop::hear_settings()
 {
 	if (!settings_changed_) return;

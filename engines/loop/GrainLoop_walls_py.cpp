@@ -19,7 +19,7 @@ geometry::Vec<3> slide_of(const py::object& given, loop::Side side, int dimensio
 	return slide;
 }
 
-/// setWall(side, position=..., velocity=... | pressure=..., mass=..., ...): what is not said stays as it is.
+/// setWall(side, position=..., velocity=... | pressure=..., mass=..., ...): omitted values do not change.
 py::object set_wall(const py::tuple& arguments, const py::dict& keywords)
 {
 	GrainLoop& loop = py::extract<GrainLoop&>(arguments[0]);

@@ -68,7 +68,7 @@ SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
 	return { body.velocity + cross(body.spin, arm), body.spin * row.radius };
 }
 
-/// A contact at a step: `before` is what the law was told, `after` belongs to the half step after it.
+/// A contact at a step: `before` is the input of the law, `after` belongs to the half step after it.
 template <int D>
 void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
 	const RelativeMotion<D>& after, const Tangent<D>& slip, const Vec<D>& image_before, const Vec<D>& image_after)

@@ -1,4 +1,4 @@
-/// How far grains may go before pairs are selected anew: every block of free grains and every body has a budget of its own.
+/// The distances that grains may travel before pairs are selected again: every block of free grains and every body has its own budget.
 ///
 /// A pair that is not selected was farther apart than both budgets together, and a grain's way is never longer than sum v_max dt of its
 /// block: until a block has used up its budget no such pair can touch. A few fast grains so cost pairs around themselves alone.

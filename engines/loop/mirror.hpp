@@ -47,7 +47,7 @@ public:
 	virtual void take_next_flow() = 0;
 	virtual void step() = 0;
 	virtual void write_bodies() = 0;
-	/// Everybody has been shown all bodies since somebody may have written into them.
+	/// All bodies have been written to YADE since other code may last have changed them.
 	virtual void close() = 0;
 	virtual bool is_open() const = 0;
 
@@ -58,7 +58,7 @@ public:
 	virtual void change_settings() = 0;
 	virtual void bring_settings_of_step() = 0;
 	virtual void bring_loads() = 0;
-	/// An axis of the cell that is left free must be longer than the scene: YADE lets grains meet across it.
+	/// A non-periodic axis of the loop must be longer in the cell than the scene: YADE finds contacts across it.
 	virtual void require_spread() const = 0;
 
 	virtual int body_index(int id) = 0;

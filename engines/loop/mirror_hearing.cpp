@@ -1,4 +1,4 @@
-/// What others wrote into YADE's bodies and forces: heard at once, or by reading the scene anew, or refused.
+/// Handles changes by other code in YADE's bodies and forces: applied at once, or by reading the scene again, or refused.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -72,7 +72,7 @@ void MirrorOf<D>::remember_what_is_written()
 	open = true;
 }
 
-/// Hears what others wrote into grains since all were last shown: a motion at once, anything else by reading the scene anew.
+/// Applies changes of grains by other code since all were last written: of a motion at once, of anything else by reading the scene again.
 template <int D>
 void MirrorOf<D>::hear_bodies()
 {

@@ -1,4 +1,4 @@
-/// Everything that decides how a run goes on, as one value: its copies are checkpoints, trial steps, and what a run goes back to.
+/// The complete state of a run as one value: its copies are used for checkpoints, trial steps, and to return to an earlier state.
 #pragma once
 #include <limits>
 #include <vector>

@@ -25,7 +25,7 @@ void Stepper<D>::put(std::size_t index, const Grain<D>& grain)
 	row.x = grain.place, row.v = grain.velocity;
 	row.surface = grain.spin * grain.radius;
 	if (!elsewhere) return;
-	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // whoever was near is no guide any more
+	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // earlier neighbours are no longer valid
 	surfaces.forget_list();
 	state.selection_due = moved_since_look = true;
 }

@@ -88,7 +88,7 @@ geometry::Bounds<D> turned_any_way(geometry::Bounds<D> box)
 	return box;
 }
 
-/// A grain meets the image of a solid that is nearest to its middle, so no other image may reach it.
+/// Only the image of a solid that is nearest to a grain's centre counts, so no other image may touch the grain.
 template <int D>
 void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 {

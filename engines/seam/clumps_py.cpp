@@ -1,4 +1,4 @@
-/// Gives a clump the centre of the body that it stands for: YADE puts it at the mean of its members' masses.
+/// Gives a clump the centre of mass of the body that it represents; YADE uses the centre of its members' masses.
 #include <boost/python.hpp>
 
 #include "engines/seam/registered.hpp"

@@ -52,7 +52,7 @@ Real smallest_radius(const yade::Scene& scene)
 	return smallest;
 }
 
-/// Cuts what goes on without end to just under two periods.
+/// Cuts endless sides to just under two periods.
 ///
 /// The collider moves a bound into the cell by whole periods, counted in an int: a bound at 1e100 never gets there, and its second sort
 /// does not end. A box longer than a period overlaps everything along that axis. The first sort walks through the cell from the lower

@@ -1,4 +1,4 @@
-/// One question to the surface, and the ScGeom of its answer.
+/// Evaluates the surface once, and makes the ScGeom from the result.
 #include "engines/solids/Ig2_Solid_Sphere_ScGeom.hpp"
 
 #include "engines/solids/conversions.hpp"
