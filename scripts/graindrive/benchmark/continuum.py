@@ -26,7 +26,7 @@ class Drum:
         self.size = self.flow.fraction.size
 
     def rate(self, steps):
-        """Go on by so many steps; return cell-steps per second of processor time."""
+        """Advance by `steps` steps; return cell-steps per second of processor time."""
         start = time.process_time()
         self.flow.advance(steps)
         return self.size * steps / (time.process_time() - start)

@@ -225,7 +225,7 @@ HEADING = (
 
 
 def line(found):
-    """Return a row in words."""
+    """Return a row as text."""
     return (
         f"{found['feature']:43} {found['ratio']:6.2f} {found['lowest']:7.2f} {found['highest']:7.2f}"
         f" {found['without_it_ns']:7.1f} {found['with_it_ns']:8.1f}  {found['when_nothing']}"

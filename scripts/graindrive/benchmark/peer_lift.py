@@ -44,14 +44,14 @@ def without_springs(_bed, found):
 
 
 def theirs(lift, p, stage, material, steps, every, folder):
-    """Return LIGGGHTS's forces on cylinder and base every so many steps, without those of the start, (n, 6)."""
+    """Return LIGGGHTS's forces on cylinder and base at intervals, without the initial ones, (n, 6)."""
     given = lift.GRAVITY, p.bulk_gravity, p.cylinder_diameter * lift.D
     found, _ = peer.dragged(stage, material, *given, steps, every, folder)
     return np.stack([found[name] for name in peer.COLUMNS], axis=1)[1:]
 
 
 def ours(steps, every, block):
-    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples `every` so many steps.
+    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples; `every` is the number of steps between samples.
 
     Velocities begin on the step, as LIGGGHTS's.
     """

@@ -148,7 +148,7 @@ def killed_and_resumed(subject, trial, chance, most):
 
 def say(subject, trial, count, when, words, out):
     """Print the line of one kill."""
-    last = [line for line in words.splitlines() if line.strip()][-1:] or ["nothing said yet"]
+    last = [line for line in words.splitlines() if line.strip()][-1:] or ["no output yet"]
     left = ", ".join(sorted(p.name for p in out.parent.iterdir())) or "nothing"
     print(f"{subject.name} {trial}: kill {count['kills']}, {when}: {last[0][:80]!r}, left {left}", flush=True)
 

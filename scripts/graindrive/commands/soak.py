@@ -99,7 +99,7 @@ def rows_until(path, end):
 
 
 def rewrite(path, rows):
-    """Write ledger.csv anew with these rows, in one step (by a rename)."""
+    """Replace ledger.csv by these rows, in one step (by a rename)."""
     with whole_files.written(path) as beside, open(beside, "w", newline="") as file:
         csv.writer(file).writerows([COLUMNS, *(map(repr, map(float, row)) for row in rows)])
 

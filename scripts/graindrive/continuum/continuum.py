@@ -36,7 +36,7 @@ class FlowMarch:
         return self.flow.time
 
     def advance(self, steps):
-        """Go on by so many steps."""
+        """Advance by `steps` steps."""
         while steps > 0:
             signals.check()
             some = min(steps, CHUNK)

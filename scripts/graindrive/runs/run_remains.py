@@ -187,7 +187,7 @@ def was_to_resume(part):
 
 
 def attribute(folder, name):
-    """Return an attribute of the `run.h5` in a folder as text; None where there is none."""
+    """Return an attribute of the `run.h5` in a folder as text; None if there is none."""
     return run_file.attribute(folder / run_file.NAME, name)
 
 

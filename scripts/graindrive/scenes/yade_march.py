@@ -36,7 +36,7 @@ class YadeMarch:
         return O.iter * O.dt
 
     def advance(self, steps):
-        """Run YADE's loop for so many steps."""
+        """Run YADE's loop for `steps` steps."""
         advance(steps)
 
     def save(self, folder):
