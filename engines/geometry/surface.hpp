@@ -54,7 +54,7 @@ public:
 	/// A box that contains the whole solid, for search and packing. The default is infinite.
 	virtual Bounds<D> bounds() const { return {}; }
 
-	/// The radius [m] up to which spheres outside meet the surface where it is. Where distances are only known to be bounds, as beyond
+	/// The radius [m] up to which spheres outside meet the surface at the right place. Where only bounds of distances are known, as beyond
 	/// the grid of a sampled one, a larger sphere would meet it too soon.
 	virtual double largest_sphere() const { return Bounds<D>::infinity; }
 };

@@ -80,7 +80,7 @@ public:
 
 	/// Writes the loop's state into all of YADE's bodies.
 	void sync();
-	/// The same, unless they are true already: what others have written into them since is not lost.
+	/// The same, unless they are up to date: changes that other code has made since are then not overwritten.
 	void show_bodies();
 	/// Python may call while the loop runs in the background: holding this lock guarantees that the loop is between two steps.
 	using Turn = std::unique_lock<std::recursive_mutex>;

@@ -37,8 +37,8 @@ double Budgets<D>::body_speed(std::size_t b) const
 	return length(body.velocity - drift_of(state.n_blocks() + b)) + length(body.spin) * state.reach[b];
 }
 
-/// Somewhat longer than the pace, but so short that what drifts fastest gains a diameter on what drifts slowest: the cells in which
-/// displacements are compared must hold all that may meet until then.
+/// Somewhat longer than the pace, but so short that the fastest drift exceeds the slowest by at most one diameter: the cells in which
+/// displacements are compared must contain all grains that may touch until then.
 template <int D>
 void Budgets<D>::choose_horizon()
 {

@@ -18,16 +18,16 @@ public:
 	void forget_list() { largest_way = HUGE_VAL; }
 	/// True if a solid was moved since the last step; the list is then made again.
 	bool moved_by_hand();
-	/// Where solids are after a step.
+	/// Stores the positions of solids after a step.
 	void remember_places();
-	/// Tells that pairs are about to be selected anew: no grain has gone farther since the last time [m].
+	/// Called before pairs are selected again; `farthest` is the largest distance that a grain has moved since the last time [m].
 	void note_selection(double farthest) { largest_way += farthest; }
-	/// Lists grains near surfaces anew once something may have come from beyond the list to a surface; until pairs are selected anew no
-	/// grain goes farther than `to_come` [m].
+	/// Lists grains near surfaces again if a grain outside the list may have reached a surface; until pairs are selected again no grain
+	/// moves farther than `to_come` [m].
 	void list(double to_come);
 	void compute_forces();
 	void take_back();
-	/// To bodies: what surfaces do to their members, and what grains do to their surfaces.
+	/// Adds to bodies the forces of surfaces on their members, and the forces of grains on their surfaces.
 	void add_to_bodies();
 	/// kick(row, force, torque over radius) for each free grain that touches.
 	template <class Kick>

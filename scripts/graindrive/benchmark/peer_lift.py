@@ -51,9 +51,9 @@ def theirs(lift, p, stage, material, steps, every, folder):
 
 
 def ours(steps, every, block):
-    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples; `every` is the number of steps between samples.
+    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples.
 
-    Velocities begin on the step, as LIGGGHTS's.
+    `every` is the number of steps between samples. Initial velocities belong to the time of the positions, as in LIGGGHTS.
     """
     from yade import O
 
