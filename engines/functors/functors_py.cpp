@@ -1,4 +1,4 @@
-/// Python bindings of the functors and of what a contact carries.
+/// Python bindings of the functors and of the data of a contact.
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 #include "engines/functors/contact_law_functors.hpp"
 #include "engines/functors/present_contacts.hpp"

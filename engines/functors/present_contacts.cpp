@@ -100,7 +100,7 @@ const yade::Interaction* real_interaction(const yade::Body& body, int partner)
 
 Real radius_of(const yade::Body& body) { return static_cast<const yade::Sphere&>(*body.shape).radius; }
 
-/// What a contact carries: that of YADE's interaction, or what a new one will be given.
+/// The data of a contact: from YADE's interaction, or as a new contact will get them.
 class Carried {
 public:
 	Carried(const yade::Scene& scene, const yade::Interaction* known, Real radius, int id1, int id2,

@@ -94,7 +94,7 @@ public:
 	/// Writes loop, bodies and the engines of O.engines that are ours into one file; `saved_scene` is what O.save wrote, or nothing.
 	void save_checkpoint(const std::string& path, const std::string& saved_scene);
 	/// Continues from such a file in the same scene, built again or loaded. Changes nothing if it refuses the file.
-	/// @throws std::runtime_error naming the file and what is wrong with it, or what of the scene does not fit
+	/// @throws std::runtime_error naming the file and its fault, or the part of the scene that does not fit
 	void restore_checkpoint(const std::string& path);
 	/// What O.save wrote when the file was made; empty if nothing.
 	static std::string saved_scene(const std::string& path);

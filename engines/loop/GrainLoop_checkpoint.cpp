@@ -10,7 +10,7 @@ namespace graindrive {
 
 namespace {
 
-/// A body of YADE: what it is, by which a file is known to fit, and where it is.
+/// A body of YADE: its properties, which must agree between file and scene, and its motion.
 struct BodyRecord {
 	int exists = 0, clump = -1;
 	Real radius = 0, mass = 0;
@@ -160,7 +160,7 @@ std::string misfit(const Surroundings& saved, const Surroundings& here)
 	return "";
 }
 
-/// The physics of a loop, name by name: what may not differ between a file and the scene that it is read into.
+/// The physics of a loop by name; these values must agree between a file and the scene that reads it.
 std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 {
 	std::vector<std::pair<std::string, std::string>> all;

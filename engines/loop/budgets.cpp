@@ -147,7 +147,7 @@ void Budgets<D>::choose_pace(const PairCounts& counts, std::size_t candidates)
 	state.pace = std::clamp(std::sqrt(selecting_cost<D> * candidates / more_per_step), fewest_steps, most_steps);
 }
 
-/// In the plane each of two grains may have gone as far as the farthest one has.
+/// In the plane each of two grains may have moved as far as the farthest one.
 template <>
 double Budgets<2>::approach_before_selection() const
 {
@@ -156,7 +156,7 @@ double Budgets<2>::approach_before_selection() const
 	return 2 * farthest + state.images_went_since_search + state.images_may_go;
 }
 
-/// In space by what neighbours have gone differently.
+/// In space the differences of displacements between neighbours count.
 template <>
 double Budgets<3>::approach_before_selection() const
 {

@@ -1,6 +1,6 @@
 /// The energy ledger: where the energy of a scene is, where it came from and where it went, at the steps of the leapfrog.
 ///
-/// In space what is remembered of a contact turns with its normal. At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
+/// In space the stored vectors of a contact turn with its normal. At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
 ///
 ///   K_n = sum 1/2 m v-.v+,   K_n - K_{n-1} = sum 1/2 F_{n-1}.v dt + 1/2 F_n.v dt,  v = v_{n-1/2} that of the interval between them
 ///

@@ -42,7 +42,7 @@ public:
 	virtual void compute_body_forces() = 0;
 	virtual void follow_bodies() = 0;
 	virtual void take_outside_forces() = 0;
-	/// O.cell as it is at the present positions; what was set for the step that comes.
+	/// O.cell at the present positions; and the values set for the next step.
 	virtual void follow_cell() = 0;
 	virtual void take_next_flow() = 0;
 	virtual void step() = 0;
@@ -98,7 +98,7 @@ public:
 	virtual void save(const std::string& path, const std::string& companion) = 0;
 };
 
-/// Of the scene that GrainLoop stands in, from YADE's bodies. @throws std::invalid_argument for what the loop cannot move
+/// Reads GrainLoop's scene from YADE's bodies. @throws std::invalid_argument for bodies that the loop cannot move
 std::unique_ptr<Mirror> mirror_of(GrainLoop& engine);
 /// From a checkpoint; `companion` gets the caller's text. @throws std::runtime_error as Stepper::restore
 std::unique_ptr<Mirror> mirror_from(GrainLoop& engine, const std::string& path, std::string& companion);

@@ -89,7 +89,7 @@ private:
 	std::vector<Written> written;  // by grain, at the last sync
 	bool open = false;             // other code may have written into bodies since then
 
-	/// What a body counts with in its pairs, as it was when the scene was read.
+	/// Mass and inertia of a body in its pairs, as read with the scene.
 	struct Counted {
 		Real mass, inertia[3];
 		bool held, damped;    // held: all its directions are blocked

@@ -1,4 +1,4 @@
-/// Where grains may be, and what a guard says that trips.
+/// The bounds of grains, and the messages of the guards.
 #include "engines/loop/running_guards.hpp"
 
 #include <algorithm>
@@ -136,7 +136,7 @@ void RunningGuards<D>::check_surfaces(const Surfaces<D>& surfaces) const
 		throw std::runtime_error(sentence(time_of_step(), introduce(at), " overlaps ", surfaces.name_of_surface(touch.surface),
 			" by ", overlap / radius, " of its radius, more than ", state.guards.largest_overlap,
 			"; likely causes: grains too soft for their speed or load, too fast or light a wall, or grains beyond it at the "
-		    "start"));
+			"start"));
 	}
 }
 

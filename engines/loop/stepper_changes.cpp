@@ -173,7 +173,7 @@ void Stepper<D>::track_energy(bool on)
 	books = std::make_unique<Books<D>>(state, surfaces);
 }
 
-/// The state as it is between steps, springs among it.
+/// The state between steps, including springs.
 template <int D>
 State<D> Stepper<D>::snapshot()
 {
@@ -204,7 +204,7 @@ void Stepper<D>::resume()
 	budgets.find_neighbours(pairs);
 }
 
-/// A trial step with half a kick, after which everything is as it was, whatever a guard says on the way.
+/// A trial step with half a kick, after which the state is restored, also if a guard raises an error.
 template <int D>
 double Stepper<D>::kinetic_energy_on_step()
 {

@@ -58,7 +58,7 @@ void Stepper<D>::spins(double* to) const
 	}
 }
 
-/// What a law remembers as a force is what it holds to Coulomb's bound: a dashpot comes on top of it.
+/// Laws that store a force limit this force by Coulomb's bound; the dashpot's force is added to it.
 template <int D>
 bool Stepper<D>::slips(const ForceParts<D>& force, const Tangent<D>& remembered) const
 {
@@ -138,7 +138,7 @@ typename Stepper<D>::Sight Stepper<D>::look_between_steps()
 	const bool was_under_way = body_forces_known;
 	compute_body_forces();
 	const Sight sight{ present_contacts(), surface_contacts() };
-	if (!was_under_way) take_back_body_forces();  // so that the loop can be saved and the step begins anew
+	if (!was_under_way) take_back_body_forces();  // so that the loop can be saved and the step can start again
 	return sight;
 }
 

@@ -121,7 +121,7 @@ void write_state(const RigidBody<D>& body, const YadeBodies::Turned& turned, Sta
 
 namespace {
 
-/// One plane and one ratio m R^2/I for all free grains: what the loop's equations of motion take for granted.
+/// Requires one plane and one ratio m R^2/I for all free grains, as the loop's equations of motion assume.
 template <int D>
 void require_alike(const yade::BodyContainer& bodies, const YadeBodies& map, Scene<D>& scene)
 {

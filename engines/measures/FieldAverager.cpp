@@ -118,7 +118,7 @@ void FieldAverager::clear()
 	averagedAs = description();
 }
 
-/// All that decides what a sum means; a fixed origin may be moved while it averages, as a body moves.
+/// All settings that affect the sums; a fixed origin may be moved during the average, as a body moves.
 std::string FieldAverager::description() const
 {
 	std::ostringstream words;
@@ -202,7 +202,7 @@ FieldAverager::Frame FieldAverager::frame()
 	return now;
 }
 
-/// A view calls free what is free in the plane; in space a grain must be free along z and about x and y as well.
+/// A view's free grains are free in the plane; in space a grain must also be free along z and about x and y.
 void FieldAverager::leave_out_what_is_no_grain()
 {
 	constexpr unsigned out_of_plane = yade::State::DOF_Z | yade::State::DOF_RX | yade::State::DOF_RY;

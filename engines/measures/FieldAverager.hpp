@@ -63,7 +63,7 @@ public:
 	int phase_at(Real time) const;
 	/// Samples by phase; zeros where settings have changed since.
 	std::vector<int> samples() const;
-	/// False before the first sample and after a change of what decides the fields, until the next one.
+	/// False before the first sample, and after a change of a setting that affects the fields until the next sample.
 	bool sums_fit() const;
 	/// Fields at a point of the grid (FieldGrid::point); only while `sums_fit`.
 	template <int D>

@@ -1,6 +1,6 @@
-/// What every class that Graindrive adds to YADE shares: name, attributes for Python and archives, and checks of what is set.
+/// Common parts of all classes that Graindrive adds to YADE: name, attributes for Python and archives, and checks of values.
 ///
-/// A class derives from `Registered<Self, Base>` and says once what it has:
+/// A class derives from `Registered<Self, Base>` and declares its attributes once:
 ///
 ///   class Kicker : public Registered<Kicker> {
 ///   public:

@@ -96,7 +96,7 @@ void SceneContacts::contacts_on(int body, std::vector<BodyContact>& contacts)
 	}
 }
 
-/// Of the contacts alone: YADE's force container also holds what others put there (ForceEngine, O.forces.setPermF).
+/// Only the contacts' forces: YADE's force container also holds forces of other sources (ForceEngine, O.forces.setPermF).
 Wrench SceneContacts::wrench_on(int body)
 {
 	found_.clear();

@@ -32,7 +32,7 @@ public:
 	std::size_t candidates() const { return state.pairs.candidates.size(); }
 	/// Lays out the selected pairs again, as stored in the state.
 	void lay_out();
-	/// Back to a state of the same selection: pairs lie where they lay.
+	/// Returns to a state of the same selection, in which pairs have the same places.
 	void return_to_state();
 
 	// A step: early pairs before anything moves, then the sweep; both by all threads.

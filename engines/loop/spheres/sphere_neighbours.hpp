@@ -16,7 +16,7 @@ public:
 	/// @throws std::invalid_argument for a law that is for disks only
 	void set_up();
 	StepMotion<3>& motion() { return data; }
-	void see_cell() {}  ///< it stays as it is
+	void see_cell() {}  ///< nothing to do
 	Processor processor() const { return kernel.processor; }
 	int width() const { return kernel.width; }
 	/// Makes the rows after the grains that fill up packs.

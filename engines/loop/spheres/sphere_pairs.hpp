@@ -51,7 +51,7 @@ public:
 		const KeptPairs* kept;                 ///< after a search; else springs stay with their candidates
 		double smallest_budget;                ///< [m]
 		double horizon;                        ///< for how long the selection may last [s]
-		bool as_listed;                        ///< select what `state.pairs.listed` says, not what is near
+		bool as_listed;                        ///< select the pairs in `state.pairs.listed`, not the near ones
 	};
 
 	PairCounts select(const Source& source);
