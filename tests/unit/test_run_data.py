@@ -148,5 +148,5 @@ def test_a_disk_that_fills_up_keeps_the_first_error_and_names_the_folder(tmp_pat
 def test_quantities_without_a_value_are_named_on_stderr(tmp_path, capsys):
     with RunFolder(StudyParameters(out=str(tmp_path / "run")), study="toy") as folder:
         folder.summarize(slope=float("nan"), slope_err=float("nan"), depth=1.0, depth_err=float("nan"), speed=None)
-    assert "toy: the run gives no slope, speed: null in summary.json" in capsys.readouterr().err
+    assert "toy: the run gives no value of slope, speed: null in summary.json" in capsys.readouterr().err
     assert json.loads((tmp_path / "run" / "summary.json").read_text())["slope"] is None
