@@ -262,7 +262,7 @@ def test_whole_remains_serve_where_further_ones_are_damaged(place, capsys):
     with place.open(resume=True) as folder:
         assert folder.resumed["step"] == 2
         go_on(folder, None, 6)
-    assert place.rows() == WHOLE and "track.npz differs from its checksum; it is passed over" in capsys.readouterr().err
+    assert place.rows() == WHOLE and "track.npz differs from its checksum; it is not used" in capsys.readouterr().err
 
 
 def test_remains_of_other_parameters_and_of_other_names_are_left_alone(place):
