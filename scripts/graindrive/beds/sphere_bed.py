@@ -26,7 +26,9 @@ LARGEST_OVERLAP = (
     0.3  # [R] largest allowed overlap while a bed settles: a tall column that lands loads its foot heavily
 )
 LOOK_EVERY = 100  # steps between two checks of a bed that comes to rest
-LOAD_ERROR = 1e-3  # allowed relative error of the forces on base and solid, at least the weight of one grain that may still roll
+LOAD_ERROR = (
+    1e-3  # allowed relative error of the forces on base and solid, at least the weight of one grain that may still roll
+)
 POURED_ERROR = 5e-3  # the same while a bed is poured
 LOOKS_BORNE = 3  # number of successive checks in which the error must be allowed
 MOST_LOOKS = 1000

@@ -29,7 +29,9 @@ OURS = {28: 0.2, 40: 0.2, 56: 0.2, 80: 0.2, 112: 0.2, 160: 0.1}
 THEIRS = {28: 0.4, 40: 0.4, 56: 0.4, 80: 0.4}
 QUICK = 3, 2  # number of grids of each code with --quick, the coarsest ones
 SAME_GRID = 40
-TRANSITION = 1  # half width of our wall's transition, in cells; 2, as in drum study and paper, is 1 % less exact on 56 cells
+TRANSITION = (
+    1  # half width of our wall's transition, in cells; 2, as in drum study and paper, is 1 % less exact on 56 cells
+)
 SHELL = 4  # cells around our drum
 DEPTHS = np.arange(1, 19) * 0.05  # from the axis, in radii: from below the surface to the wall's transition
 MIDDLE = 0.5  # radii to either side of the axis, within which the surface is a straight line

@@ -9,7 +9,9 @@ from .outcome import BOUND, GUARD, RIGHT, judged, largest
 
 CONTACT = 1e-3  # duration of a contact [d/v]; the contact turns by no more than this angle
 STEPS = 500  # number of steps of a contact
-SINGLE = 3e-3  # additional error in single precision: 6e-8 d relative to an overlap of some 3e-4 d, summed over the contact
+SINGLE = (
+    3e-3  # additional error in single precision: 6e-8 d relative to an overlap of some 3e-4 d, summed over the contact
+)
 
 
 def meeting(speed, *, apart=1e-5, weights=(1, 1), radii=(R, R), spins=(0, 0), at=0.0):
