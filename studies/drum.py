@@ -2,26 +2,28 @@
 
 System of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025): disks of d to 1.2 d in a
 drum of D = 150, 300, 450 d with a rough wall, under gravity, at Fr = Omega^2 D/2g from 1e-4 to 1e-2. Linear spring and dashpot,
-k_n = 2e5 m g/d with m the mass of a disk of d, k_t = 2/7 k_n, the same dashpot along and across, mu = 0.5, e = 0.92.
-model=continuum solves the same drum as a fluid of rheology mu(I), model=both does one after the other and compares. Units:
-grain diameter d, density rho, gravity g; so m = pi/4 rho d^2.
+k_n = 2e5 m g/d, where m is the mass of a disk of diameter d, k_t = 2/7 k_n, the same dashpot in the normal and the tangential
+direction, mu = 0.5, e = 0.92. model=continuum solves the same drum as a fluid of rheology mu(I); model=both runs one model after
+the other and compares them. Units: grain diameter d, density rho, gravity g; so m = pi/4 rho d^2.
 
-Readings, each a parameter or named here: a grain has the mass of its own diameter, as section II.2.2 says; the wall's disks, of
-diameter d, lie on the circle of diameter D itself, 475 at D = 150 (where pi D = 471, so neighbours overlap by 0.008 d, and feel
-nothing of it), 632 and 946 at D = 300 and 450 (a gap of 0.49 d, which lets no grain through), at other diameters as many as
-touch. The wall counts as infinitely heavy in its contacts. N is the paper's, 7700, 30600 and 69200, which fill half of the
-circle at a solid fraction of 0.825 to 0.83; at other diameters and fillings as many as do at 0.828. The surface is where the
-solid fraction is 0.7; its angle is that of a straight line through it within D/8 of the axis. u is taken in squares of 1.2 d on
-the line through the axis normal to the surface. h is where u = 0, from the axis, as the paper takes the surface to pass through
-it; layer_over_diameter is from the surface that was found.
+The paper leaves some choices open. Each of them is a parameter or is stated here. A grain has the mass of its own diameter, as
+section II.2.2 says. The wall's disks, of diameter d, lie on the circle of diameter D itself: 475 at D = 150 (pi D = 471, so
+neighbours overlap by 0.008 d, but they exert no forces on each other), 632 and 946 at D = 300 and 450 (a gap of 0.49 d, which
+lets no grain through). At other diameters, there are as many wall disks as fit side by side. The wall counts as infinitely heavy
+in its contacts. N is the paper's, 7700, 30600 and 69200, which fill half of the circle at a solid fraction of 0.825 to 0.83; at
+other diameters and fillings, N follows from a solid fraction of 0.828. The surface lies where the solid fraction is 0.7; its
+angle is that of a straight line fitted to it within D/8 of the axis. u is averaged in squares of 1.2 d on the line through the
+axis normal to the surface. h is the distance from the axis to the place where u = 0, because the paper assumes that the surface
+passes through the axis; layer_over_diameter is measured from the surface that was found.
 
-The grains are poured with a restitution of 0.5, and lie level to within 3 degrees. Averages begin when the drum has turned by
-start_turn and the angle of the grains' centre of mass has not drifted by 0.5 degrees over the last third of it; they go over
-`turn`. Half a turn takes each grain once through the layer. Errors are those of eight blocks in time.
+The grains are poured with a restitution of 0.5; their surface is then level to within 3 degrees. Averages begin when the drum has
+turned by start_turn and the angle of the grains' centre of mass has drifted by less than 0.5 degrees over the last third of it;
+they cover a rotation by `turn`. In half a turn each grain passes once through the layer. Errors come from eight blocks in time.
 
-Cost: a whole turn takes 2 pi/Omega, at the paper's step and Omega = 6.28e-3 1e7 steps. By the rates of one core (85 M
-particle-steps/s at D = 150, by estimate 70 at 450) that is 15 minutes at D = 150, 1.1 h at 300 and 2.7 h at 450; a fifth of it
-with dt_factor=5, still a sixth of the critical step. The demo turns the drum of 150 d by half a turn, a minute and a half.
+Cost: a whole turn takes 2 pi/Omega, which is 1e7 steps at the paper's time step and Omega = 6.28e-3. At the rates of one core
+(85 M particle-steps/s at D = 150, an estimated 70 M at 450) that takes 15 minutes at D = 150, 1.1 h at 300 and 2.7 h at 450, and
+a fifth of it with dt_factor=5, which is still a sixth of the critical step. The demo turns the drum of 150 d by half a turn and
+takes a minute and a half.
 
     scripts/run drum                                              the demo
     yade -n -x studies/drum.py drum_diameter=300 froude=3e-3 scale=paper out=drum-300
@@ -67,89 +69,97 @@ PAPERS_GRAINS = {150.0: 7700, 300.0: 30600, 450.0: 69200}  # D: N, at half filli
 PAPERS_WALL = {150.0: 475, 300.0: 632, 450.0: 946}  # D: N_w
 PAPERS_DRUM, PAPERS_OMEGA = 150.0, 6.28e-3  # d, sqrt(g/d), of its Figs. 2 and 8
 BED_FRACTION = 0.828  # solid fraction at which the paper's grains fill half of the drum, mean over its three D
-WIDEST_GAP = 0.8  # [d] between disks of the wall; a grain of 1 d must not come through
-SHALLOWEST = 3  # [d] of the grains' bed; less is no layer on a bed
-MOST_ROWS = 50_000  # of the series; a row costs some 0.2 ms
-SAME_FILLING = 0.05  # by which the models of one run may differ in what they fill
+WIDEST_GAP = 0.8  # [d] largest gap between disks of the wall; a grain of 1 d must not pass through it
+SHALLOWEST = 3  # [d] least depth of the grains' bed; a shallower bed has no flowing layer on a resting part
+MOST_ROWS = 50_000  # largest number of rows of the series; a row costs some 0.2 ms
+SAME_FILLING = 0.05  # largest relative difference between the fillings of the two models of one run
 SMALLEST_DRUM = 20  # d
-CENTRIFUGES = 1.0  # Fr from which grains at the wall do not fall
+CENTRIFUGES = 1.0  # Fr at which grains at the wall begin to be centrifuged
 POURING_RESTITUTION, POURING_STEP, REST = 0.5, 5e-4, 1e-3  # [-]; [sqrt(d/g)] at k_n = 2e5 m g/d; [m g d]
 BLOCKS = 8  # in time, of the averages
-MOST_STARTS = 2  # times start_turn: then averages begin even if the flow still drifts
+MOST_STARTS = 2  # after so many times start_turn averages begin even if the flow still drifts
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
-OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # what may help the guard
+OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # advice when the overlap guard stops a run
 SERIES = quantities.units("series", "t turn centre_angle centre_x work torque", quantities.GRAIN)
 
 
 class DrumParameters(StudyParameters):
-    """What the drum study knows, in units of d, rho, g."""
+    """The parameters of the drum study, in units of d, rho, g."""
 
     unit_system: ClassVar[str] = quantities.GRAIN
 
     model: Literal["dem", "continuum", "both"] = quantity(
-        "dem", "-", "grains, a continuum, or both and their difference"
+        "dem", "-", "what to simulate: grains, a continuum, or both and their difference"
     )
-    drum_diameter: float = quantity(150.0, "d", "D of the circle on which the wall's disks lie", gt=0)
+    drum_diameter: float = quantity(150.0, "d", "D, diameter of the circle on which the wall's disks lie", gt=0)
     angular_velocity: Optional[float] = quantity(
         None,
         "sqrt(g/d)",
-        f"Omega, counter-clockwise; auto: by froude, else {PAPERS_OMEGA:g} sqrt({PAPERS_DRUM:g} d/D)",
+        f"Omega, counter-clockwise; auto: from froude if given, else {PAPERS_OMEGA:g} sqrt({PAPERS_DRUM:g} d/D)",
         gt=0,
     )
-    froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: by angular_velocity", gt=0)
-    filling: float = quantity(0.5, "-", "part of the drum that the bed fills", gt=0)
-    grains: Optional[int] = quantity(None, "-", "number of grains; auto: the paper's, or by filling", ge=1, le=10**7)
+    froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: from angular_velocity", gt=0)
+    filling: float = quantity(0.5, "-", "share of the drum that the bed fills", gt=0)
+    grains: Optional[int] = quantity(
+        None, "-", "number of grains; auto: the paper's, or from filling", ge=1, le=10**7
+    )
     wall_disks: Optional[int] = quantity(
-        None, "-", "disks of the wall; auto: the paper's, or as many as touch", ge=1, le=10**6
+        None, "-", "number of the wall's disks; auto: the paper's, or as many as fit side by side", ge=1, le=10**6
     )
     friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
     restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
     stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
-    start_turn: float = quantity(180.0, "degrees", "turn of the drum before averages begin, at least", gt=0)
-    turn: float = quantity(360.0, "degrees", "turn of the drum over which is averaged", gt=0, lever=Lever(360, "lower"))
+    start_turn: float = quantity(180.0, "degrees", "least rotation of the drum before averages begin", gt=0)
+    turn: float = quantity(
+        360.0, "degrees", "rotation of the drum during the averages", gt=0, lever=Lever(360, "lower")
+    )
     field_spacing: Optional[float] = quantity(
-        None, "d", "edge of the fields' bins; auto: 0.6, for drums over 200 d 1.2", gt=0, le=5
+        None, "d", "side of the fields' square bins; auto: 0.6, or 1.2 for drums over 200 d", gt=0, le=5
     )
     field_samples: int = quantity(
-        1000, "-", "grains: moments that the fields average", ge=8, le=10**6, lever=Lever(1000, "lower", 4)
+        1000, "-", "grains: number of moments in the fields' averages", ge=8, le=10**6, lever=Lever(1000, "lower", 4)
     )
     frames: int = quantity(
         1,
         "-",
-        "pictures of grains and of the continuum that are kept, evenly in time, the last at the end",
+        "number of pictures of grains and continuum to keep, at equal intervals, the last at the end",
         ge=1,
         le=9999,
         watches=True,
     )
     largest_overlap: float = quantity(
-        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+        0.1, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
     cells: int = quantity(75, "-", "continuum: cells across the drum", ge=1, le=2000, lever=Lever(300, "lower"))
     continuum_dt: float = quantity(
         0.02, "sqrt(d/g)", "continuum: time step; the paper's is 1e-4", gt=0, lever=Lever(1e-3, "higher")
     )
     viscosity: Literal["full", "split"] = quantity(
-        "full", "-", "continuum: implicit as a whole, or the paper's, of which a constant part is implicit"
+        "full", "-", "continuum: viscosity all implicit, or, as in the paper, only a constant part implicit"
     )
     rheology: Literal["mu_i", "regularised"] = quantity(
-        "mu_i", "-", "continuum: mu(I), or that of Barker, Gray (2017), which is well-posed"
+        "mu_i", "-", "continuum: mu(I), or the well-posed variant of Barker, Gray (2017)"
     )
-    static_friction: float = quantity(0.246, "-", "continuum: mu_s of slow flow", gt=0)
-    dynamic_friction: float = quantity(0.401, "-", "continuum: mu_2 of fast flow", gt=0)
+    static_friction: float = quantity(0.246, "-", "continuum: mu_s, friction of slow flow", gt=0)
+    dynamic_friction: float = quantity(0.401, "-", "continuum: mu_2, friction of fast flow", gt=0)
     inertial_scale: float = quantity(0.133, "-", "continuum: I_0 of mu(I)", gt=0)
     largest_viscosity: float = quantity(
-        8e4, "m sqrt(g/d)", "continuum: eta_max, of what rests; the paper's is 8000", gt=0, lever=Lever(8e5, "lower")
+        8e4,
+        "m sqrt(g/d)",
+        "continuum: eta_max, viscosity of material at rest; the paper's is 8000",
+        gt=0,
+        lever=Lever(8e5, "lower"),
     )
     tolerance: float = quantity(
         1e-5,
         "-",
-        "continuum: residual of the pressure at which its solver ends",
+        "continuum: residual at which the pressure solver stops",
         gt=0,
         lt=1,
         lever=Lever(1e-8, "higher", factor=10),
     )
-    pressure_solver: str = quantity("", "-", "continuum: name of the pressure's solver; empty: the fastest")
+    pressure_solver: str = quantity("", "-", "continuum: name of the pressure solver; empty: the fastest")
 
     @property
     def omega(self):
@@ -188,7 +198,7 @@ class DrumParameters(StudyParameters):
         return self.omega**2 * self.drum_diameter / 2 if self.froude is None else self.froude
 
     def auto_values(self):
-        """Return what is taken for the keys that are auto."""
+        """Return {key: value} for the keys that are auto."""
         return dict(
             angular_velocity=self.omega,
             froude=self.froude_number,
@@ -211,7 +221,7 @@ def time_step(p):
 
 
 def radians_per_step(p):
-    """Return by how much the drum turns in a step [rad]."""
+    """Return the angle by which the drum turns in a step [rad]."""
     return p.omega * time_step(p)
 
 
@@ -226,7 +236,7 @@ def material(p, restitution=None):
 
 
 def recipe(p):
-    """Return the recipe of the drum and its grains at rest."""
+    """Return the recipe for the drum and its grains at rest."""
     return drum.DrumRecipe(
         diameter=p.drum_diameter,
         wall_disks=p.wall_count,
@@ -241,7 +251,7 @@ def recipe(p):
 
 
 def build(p, grains, dt):
-    """Put wall, grains, drive and measures into YADE; return ids of the grains (first, behind the last) and of the wall."""
+    """Put wall, grains, drive and measures into YADE; return ids of the grains (first, last + 1) and of the wall."""
     from yade import O
 
     with recording.overlap_advice(OVERLAP_KEYS):
@@ -266,7 +276,7 @@ def imposed_turn(p, wall):
 
 
 def field_averager(p, dt):
-    """Return the averager of fields about the axis, block by block in time; it sleeps until the flow is steady."""
+    """Return the averager of fields around the axis, one average per block in time; it is off until the flow is steady."""
     reach = float(np.ceil(p.drum_diameter / 2 / p.spacing)) * p.spacing
     corners = dict(low=(-reach, -reach, 0), high=(reach, reach, 0), spacing=p.spacing, kernel="diskBin", stress=False)
     steps = rows_of_window(p) * block_steps(p)
@@ -277,23 +287,23 @@ def field_averager(p, dt):
 
 
 def block_steps(p):
-    """Return the steps between two rows of the series: a degree of turn, or less where that is much of a block in time."""
+    """Return the steps between two rows of the series: those of one degree, or fewer if a degree is a large part of a block."""
     degrees = min(1.0, p.start_turn / (STRETCHES * 2 * FEWEST_ROWS), p.turn / (4 * BLOCKS))
     return max(1, int(np.radians(degrees) / radians_per_step(p)))
 
 
 def rows_of_start(p):
-    """Return how many rows go by before the averages may begin."""
+    """Return the least number of rows before the averages begin."""
     return int(np.ceil(np.radians(p.start_turn) / (radians_per_step(p) * block_steps(p)) - 1e-9))
 
 
 def rows_of_window(p):
-    """Return how many rows the averages go over."""
+    """Return the number of rows that the averages cover."""
     return max(1, round(np.radians(p.turn) / (radians_per_step(p) * block_steps(p))))
 
 
 def most_rows(p):
-    """Return how many rows a run has that is steady as late as is waited for."""
+    """Return the number of rows of the longest possible run, whose averages begin as late as allowed."""
     return MOST_STARTS * rows_of_start(p) + rows_of_window(p)
 
 
@@ -301,7 +311,7 @@ def most_rows(p):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the grains' time step over the critical one, nan without grains."""
+    """Refuse values that allow no run; return the ratio of the grains' time step to the critical one, nan without grains."""
     check_speed(p)
     check_diameter(p)
     drum_continuum.check_words(p)
@@ -316,38 +326,38 @@ def check(p):
     most, weight = grains.force_between(0.5, p.largest_overlap), lid.weight_of_bed(p.drum_diameter)
     if weight > most:
         raise UsageError(
-            f"a drum of {p.drum_diameter:g} d presses its lowest grains with up to {weight:.3g} rho g d, but they bear"
-            f" {most:.3g} at largest_overlap={p.largest_overlap:g} R; raise stiffness"
+            f"in a drum of {p.drum_diameter:g} d the lowest grains carry a load of up to {weight:.3g} rho g d, but they can carry"
+            f" only {most:.3g} at largest_overlap={p.largest_overlap:g} R; raise stiffness"
         )
     progress.require_feasible(np.radians(MOST_STARTS * p.start_turn + p.turn) / radians_per_step(p))
     if np.radians(min(p.turn / BLOCKS, p.start_turn)) < 4 * radians_per_step(p):
         raise UsageError(
-            f"the drum turns by {np.degrees(radians_per_step(p)):.3g} degrees in a step: turn={p.turn:g} must hold four of them"
-            f" in each of {BLOCKS} blocks, and start_turn={p.start_turn:g} four; raise them or lower dt_factor"
+            f"the drum turns by {np.degrees(radians_per_step(p)):.3g} degrees per step: turn={p.turn:g} must last at least four"
+            f" steps in each of {BLOCKS} blocks, and start_turn={p.start_turn:g} four steps; raise them or lower dt_factor"
         )
     if (rows := most_rows(p)) > MOST_ROWS:
         raise UsageError(
-            f"start_turn={p.start_turn:g} and turn={p.turn:g} degrees lie too far apart: rows that are short enough for one are"
-            f" {rows} for both, more than {MOST_ROWS}; raise the smaller or lower the larger"
+            f"start_turn={p.start_turn:g} and turn={p.turn:g} degrees differ too much: rows that are short enough for the smaller"
+            f" make {rows} rows in all, more than {MOST_ROWS}; raise the smaller or lower the larger"
         )
     return ratio
 
 
 def check_speed(p):
-    """UsageError unless one of angular_velocity and froude says how fast the drum turns, and grains do not cling to it."""
+    """Raise UsageError if angular_velocity and froude are both given, or if the drum is so fast that it centrifuges grains."""
     if p.angular_velocity is not None and p.froude is not None:
         raise UsageError(
             f"angular_velocity={p.angular_velocity:g} and froude={p.froude:g} both say how fast the drum turns; give one"
         )
     if p.froude_number >= CENTRIFUGES:
         raise UsageError(
-            f"Omega={p.omega:.3g} sqrt(g/d) is Fr={p.froude_number:.3g} at D={p.drum_diameter:g} d: from {CENTRIFUGES:g} on"
-            " grains are centrifuged; lower angular_velocity or froude"
+            f"Omega={p.omega:.3g} sqrt(g/d) is Fr={p.froude_number:.3g} at D={p.drum_diameter:g} d: from Fr={CENTRIFUGES:g} on"
+            " the grains are centrifuged; lower angular_velocity or froude"
         )
 
 
 def check_diameter(p):
-    """UsageError for a drum that is too small for grains, or for taking them as a continuum."""
+    """Raise UsageError for a drum that is too small for grains, and so also too small for a continuum."""
     if p.drum_diameter < SMALLEST_DRUM:
         raise UsageError(
             f"drum_diameter={p.drum_diameter:g} d has no room for a flow of grains of up to {LARGEST_DIAMETER:g} d; it must be at"
@@ -356,23 +366,26 @@ def check_diameter(p):
 
 
 def check_room(p):
-    """UsageError for a drum that is leaky, empty or too full for grains."""
+    """Raise UsageError if the wall leaks, if the drum is too full, or if the fields' bins are too large or too many."""
     if p.filling > drum.MOST_FILLING:
         raise UsageError(
-            f"filling={p.filling:g} leaves the grains no room to be poured and to flow; it must be at most {drum.MOST_FILLING:g}"
+            f"filling={p.filling:g} leaves no room for pouring the grains or for their flow; it must be at most"
+            f" {drum.MOST_FILLING:g}"
         )
     gap = p.drum_diameter * np.sin(np.pi / max(p.wall_count, 2)) - 1
     if p.wall_count > (most := 2 * round(np.pi * p.drum_diameter)):
-        raise UsageError(f"wall_disks={p.wall_count} are more than twice as many as touch; at most {most} are possible")
+        raise UsageError(
+            f"wall_disks={p.wall_count} is more than twice the number that fits side by side; give at most {most}"
+        )
     if gap > WIDEST_GAP:
         raise UsageError(
-            f"wall_disks={p.wall_count} leave gaps of {gap:.3g} d, through which grains leave; at least"
-            f" {int(np.ceil(np.pi * p.drum_diameter / (1 + WIDEST_GAP)))} are needed"
+            f"wall_disks={p.wall_count} leaves gaps of {gap:.3g} d, through which grains escape; give at least"
+            f" {int(np.ceil(np.pi * p.drum_diameter / (1 + WIDEST_GAP)))}"
         )
     if p.spacing > p.drum_diameter * SURFACE_REACH / 1.5 * (1 + 1e-9):
         raise UsageError(
-            f"field_spacing={p.spacing:g} d leaves fewer than four columns of bins within D/8 of the axis, where the surface is"
-            f" looked for; take {p.drum_diameter * SURFACE_REACH / 1.5:.3g} d or less"
+            f"field_spacing={p.spacing:g} d gives fewer than four columns of bins within D/8 of the axis, where the surface is"
+            f" fitted; give {p.drum_diameter * SURFACE_REACH / 1.5:.3g} d or less"
         )
     if (bins := (p.drum_diameter / p.spacing) ** 2 * BLOCKS) > MOST_BINS:
         raise UsageError(f"field_spacing={p.spacing:g} d makes {bins:.2g} bins, more than {MOST_BINS:.0e}; raise it")
@@ -381,22 +394,22 @@ def check_room(p):
 
 
 def check_bed(p):
-    """UsageError for grains that make no bed, or in a run of both models another one than the continuum's."""
+    """Raise UsageError if the grains make too shallow a bed, or if the two models of one run have different fillings."""
     filled = p.count / (2 * p.half)
     if (deep := p.drum_diameter * np.interp(filled, *drum.filling_by_level())) < SHALLOWEST:
         raise UsageError(
-            f"{p.count} grains make a bed {deep:.2g} d deep in a drum of {p.drum_diameter:g} d, and a flow on a bed needs"
-            f" {SHALLOWEST} d at least; raise filling, grains or drum_diameter"
+            f"{p.count} grains make a bed {deep:.2g} d deep in a drum of {p.drum_diameter:g} d, but a flow on a bed needs at"
+            f" least {SHALLOWEST} d; raise filling, grains or drum_diameter"
         )
     if p.model == "both" and p.grains is not None and abs(filled - p.filling) > SAME_FILLING * p.filling:
         raise UsageError(
-            f"grains={p.count} fill {filled:.3g} of the drum and filling={p.filling:g} is that of the continuum: model=both"
-            f" compares equal fillings; leave grains at auto or give filling={filled:.3g}"
+            f"grains={p.count} fills {filled:.3g} of the drum, but the continuum has filling={p.filling:g}: model=both compares"
+            f" equal fillings; leave grains at auto or give filling={filled:.3g}"
         )
 
 
 def run(p, folder):
-    """Do what `model` asks for, then read surface, profile and thickness off the fields, and compare the two."""
+    """Run the model or models, then find surface, profile and thickness in the fields, and compare the two models."""
     ratio, flows = check(p), {}
     if p.model != "continuum":
         before = drum_continuum.grains_before(folder)
@@ -408,7 +421,7 @@ def run(p, folder):
 
 
 def keep(p, folder, flows):
-    """Store what the `Steady` flows of the models give; beside that of grains the continuum's numbers bear its name."""
+    """Store the results of the models' `Steady` flows; if there are two, the continuum's names tell that they are its own."""
     folder.summarize(froude=p.froude_number)
     for model, flow in flows.items():
         beside = "continuum_" if model != next(iter(flows)) else ""
@@ -420,18 +433,18 @@ def keep(p, folder, flows):
 
 
 def frame_steps(p):
-    """Return the grains' steps at which pictures are taken, (frames,): even in time, the last at the end."""
+    """Return the grains' steps at which pictures are taken, (frames,): at equal intervals, the last at the end."""
     last = (rows_of_start(p) + rows_of_window(p)) * block_steps(p)
     return np.linspace(last, 0, p.frames, endpoint=False).round()[::-1]
 
 
 def frame_times(p):
-    """Return the times of the grains' pictures [sqrt(d/g)], those of the continuum's too; None without grains."""
+    """Return the times of the grains' pictures [sqrt(d/g)], which the continuum's pictures share; None without grains."""
     return None if p.model == "continuum" else frame_steps(p) * time_step(p)
 
 
 def run_grains(p, folder, ratio):
-    """Pour the grains, turn the drum, average the steady flow, or go on where a run was interrupted; return `Blocks`."""
+    """Pour the grains, turn the drum and average the steady flow, or continue an interrupted run; return `Blocks`."""
     dt, grains, march = time_step(p), material(p), YadeMarch()
     if folder.resumed:
         stage = recording.load_stage(folder, march, ("grains", "wall", "average_row", "steady"))
@@ -446,7 +459,7 @@ def run_grains(p, folder, ratio):
 
 
 def record(p, folder, march, stage):
-    """Run in blocks of a degree or less; keep series, frames, checkpoints, and once it is steady the flow; return `Blocks`."""
+    """Run in blocks of a degree or less; record series, frames, checkpoints and the steady flow; return `Blocks`."""
     from yade import O
 
     folder.declare_series(**SERIES)
@@ -486,7 +499,7 @@ def record(p, folder, march, stage):
 
 
 def row_of(p, march, drive, ids):
-    """Return what is known of the drum now: time, turn [degrees], work done on the grains, their centre of mass' angle."""
+    """Return the present state of the drum: time, turn [degrees], work done on the grains, angle of their centre of mass."""
     grains = scene.rows_of(ids)
     drum.require_inside(p.drum_diameter, grains)
     mass = grains["r"] ** 2
@@ -498,7 +511,7 @@ def row_of(p, march, drive, ids):
 
 
 def series_row(p, columns):
-    """Return the last row of the series; its torque of the grains on the drum is the mean since the row before."""
+    """Return the last row of the series; its torque of the grains on the drum is the mean since the previous row."""
     row = {name: column[-1] for name, column in columns.items()}
     given, took = (columns[name][-1] - columns[name][-2] for name in ("work", "t"))
     return dict(row, torque=-given / (p.omega * took))
@@ -513,7 +526,7 @@ def keep_means(p, folder, columns, stage):
         folder.summarize(**{name: mean.value, f"{name}_err": mean.error})
     if not stage["steady"]:
         print(
-            f"the flow still drifted after {MOST_STARTS * p.start_turn:g} degrees, where its averages begin; raise start_turn",
+            f"the flow still drifted after {MOST_STARTS * p.start_turn:g} degrees, when its averages began; raise start_turn",
             file=sys.stderr,
         )
     start = series["turn"][first]
@@ -524,18 +537,18 @@ def keep_means(p, folder, columns, stage):
 
 
 def particle_steps(p):
-    """Return grains times steps of a run that is steady at once."""
+    """Return grains times steps of a run whose averages begin as early as allowed."""
     return p.count * np.radians(p.start_turn + p.turn) / radians_per_step(p)
 
 
 def work(p):
-    """Return the steps of grains and of cells that the models of a run take together."""
+    """Return the sum of particle-steps and cell-steps over the models of a run."""
     grains = particle_steps(p) if p.model != "continuum" else 0.0
     return grains + (drum_continuum.cell_steps(p) if p.model != "dem" else 0.0)
 
 
 def core_seconds(p):
-    """Return the seconds that a run takes one core, grains and continuum."""
+    """Return the seconds that a run takes on one core, grains and continuum together."""
     grains = particle_steps(p) / np.interp(p.count, *RATES) if p.model != "continuum" else 0.0
     return grains + (drum_continuum.seconds(p) if p.model != "dem" else 0.0)
 
@@ -560,7 +573,7 @@ STUDY = Study(
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
         "grain_mass": Constant(GRAIN_MASS, "rho d^2", "m, of a disk of d"),
         "smallest_diameter": Constant(SMALLEST_DIAMETER, "d", "of the grains"),
-        "largest_diameter": Constant(LARGEST_DIAMETER, "d", "of the grains, uniform between"),
+        "largest_diameter": Constant(LARGEST_DIAMETER, "d", "of the grains, which are uniform between both"),
     },
 )
 

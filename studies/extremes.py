@@ -1,24 +1,25 @@
-"""Extremes: does a scene at the end of what it may hold give the right answer, a guard that names the cause, or a known bound?
+"""Extremes: a scene at the limit of what is allowed must give the right answer, a guard that names the cause, or a known bound.
 
-One run is one `case`, a scene of one to some hundred grains, or of a small drum of the continuum, with a closed form beside it:
+One run is one `case`: a scene of one to some hundred grains, or a small continuum drum, compared with a closed form. Cases are
 the largest stable step of every law in two and three dimensions, restitution 0.01 to 1, friction 0 to 10, spin ratios to 1000,
-speeds up to the overlap limit and beyond, radii 1:50, masses 1e6, springs 1e-12 to 1e24, a place 1e6 d from the origin, a bound
-pair for `pair_steps` steps, area fractions from 0.01 to jamming, a cell sheared for `strain` strains, the drum's largest
-viscosity. The cases are the table in `graindrive/extremes/table.py`: a name, a sentence, a function.
+speeds up to the overlap limit and beyond, radii 1:50, masses 1e6, springs 1e-12 to 1e24, a position 1e6 d from the origin, a
+bound pair for `pair_steps` steps, area fractions from 0.01 to jamming, a cell sheared for `strain` strains, and the drum's
+largest viscosity. The table in `graindrive/extremes/table.py` lists the cases: a name, a sentence, a function.
 
-What comes out is a word: `right`, the number is the closed form's within the tolerance; `guard`, a check stopped the run where it
-should, and said why; `bound`, the number is that of a limit that users must know; `wrong`, none of these, which ends no run but
-reproduces no claim. `summary.json` has the number, the one expected, the tolerance, the source and a sentence.
+The outcome is a word. `right`: the number agrees with the closed form within the tolerance. `guard`: a check stopped the run
+where it should, and said why. `bound`: the number agrees with a limit that users must know. `wrong`: none of these; such a run
+ends normally but does not reproduce its claim. `summary.json` has the number, the expected number, the tolerance, the source and
+a sentence.
 
-Not every loop and precision means something to every case: a guard of GrainLoop is none of YADE's loop. What means nothing is
-refused by name. Each case has its own time step, so there is no dt_factor.
+Some cases allow only some loops and precisions; for example, YADE's loop has no guards of GrainLoop. A loop or precision that
+does not apply is refused by name. Each case has its own time step, so dt_factor is refused too.
 
-Cost: a second or less a case, but for the bound pair, some 0.6 us a step (the paper's 1e8 steps take a minute), the sheared cell,
-and the drums, some seconds each.
+Cost: a second or less per case. Exceptions are the bound pair with some 0.6 us a step (the paper's 1e8 steps take a minute), and
+the sheared cell and the drums with some seconds each.
 
     scripts/run extremes case=friction_2d
     scripts/run extremes case=far_3d precision=single
-    scripts/campaign studies/campaigns/extremes.yaml          all of them, and the table in studies/RESULTS.md
+    scripts/campaign studies/campaigns/extremes.yaml          all cases, and the table in studies/RESULTS.md
 """
 
 import os
@@ -40,20 +41,20 @@ from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
 from graindrive.study import Cost, Observable, Study  # noqa: E402
 
-LONG = "bound_pair"  # cases that hear `pair_steps`
+LONG = "bound_pair"  # the case that uses `pair_steps`
 STEP_SECONDS, STRAIN_SECONDS, OTHERS = 6e-7, 0.06, 2.0  # of one core, measured
 
 # Parameters -----------------------------------------------------------------------------------------------------------
 
 
 class ExtremesParameters(StudyParameters):
-    """What the study of extremes knows."""
+    """The parameters of the study of extremes."""
 
     case: Literal[tuple(CASES)] = quantity("friction_2d", "-", "which extreme")
     pair_steps: int = quantity(
         1_000_000, "-", "steps of the bound pair", ge=100, lever=Lever(100_000_000, "lower", 10.0)
     )
-    strain: float = quantity(100.0, "-", "strains of the sheared cell", gt=0.1, le=1e4, lever=Lever(100, "lower"))
+    strain: float = quantity(100.0, "-", "total strain of the sheared cell", gt=0.1, le=1e4, lever=Lever(100, "lower"))
 
 
 PRESETS = {
@@ -64,18 +65,18 @@ PRESETS = {
 
 
 def check(p):
-    """Refuse a loop or a precision that means nothing to the case, and a time step of one's own."""
+    """Refuse a loop or a precision that does not apply to the case, and any dt_factor."""
     case = CASES[p.case]
     for key, words in (("loop", case.loops), ("precision", case.precisions)):
         if getattr(p, key) not in words:
             raise UsageError(
-                f"{key}={getattr(p, key)} means nothing to case={p.case} ({case.meaning}); leave {key} out"
+                f"{key}={getattr(p, key)} does not apply to case={p.case} ({case.meaning}); leave {key} out"
             )
     if p.loop == "yade" and p.precision == "single":
-        raise UsageError("precision=single is GrainLoop's, and loop=yade has none; leave one of them out")
+        raise UsageError("precision=single exists only in GrainLoop, not with loop=yade; leave one of them out")
     if p.dt_factor != 1:
         raise UsageError(
-            f"dt_factor={p.dt_factor:g}: every case has a time step of its own, to which its bound belongs; leave it out"
+            f"dt_factor={p.dt_factor:g}: every case has its own time step, and its bound holds for that step; leave dt_factor out"
         )
 
 
@@ -109,7 +110,7 @@ def column(values):
 
 
 def core_seconds(p):
-    """Return what a run takes one core [s]."""
+    """Return the time of a run on one core [s]."""
     if p.case.startswith(LONG):
         return OTHERS + STEP_SECONDS * p.pair_steps
     return OTHERS + (STRAIN_SECONDS * p.strain if p.case == "shear_strains" else 0)
@@ -120,11 +121,9 @@ STUDY = Study(
     parameters=ExtremesParameters,
     presets=PRESETS,
     observables=(
-        Observable(
-            "error_over_bound", "-", "|measured - expected| over the bound; above 1 the answer is wrong", headline=True
-        ),
-        Observable("measured", "-", "the case's number, a ratio or an error"),
-        Observable("expected", "-", "what the case's source says"),
+        Observable("error_over_bound", "-", "|measured - expected|/bound; above 1 the answer is wrong", headline=True),
+        Observable("measured", "-", "the number that the case measures, a ratio or an error"),
+        Observable("expected", "-", "the number that the case's source predicts"),
         Observable("bound", "-", "how far apart they may be"),
     ),
     cost=Cost(core_seconds, 1.0, "core-seconds"),

@@ -1,26 +1,28 @@
-"""Lift: a cylinder dragged sideways through a bed of spheres is pushed up, by a force that saturates with depth.
+"""Lift: a cylinder dragged sideways through a bed of spheres is pushed up by a force that saturates with depth.
 
 System of Guillard, Forterre, Pouliquen, "Lift forces in granular media", Phys. Fluids 26, 043301 (2014). Spheres of d = 1.5 mm
-lie in a box that is periodic in x and y, on a base of held spheres. A cylinder along y, of diameter D, meets them as a plane
-would. SI units; lengths on the command line in d. z is up, and z = 0 at the base's centres.
+lie in a box that is periodic in x and y, on a base of held spheres. The cylinder, of diameter D, lies along y; its contacts count
+as contacts with a plane. SI units; lengths on the command line in d. z is up, and z = 0 at the centres of the base's spheres.
 
-The paper holds the cylinder and moves the base with U_0. Here the base is at rest and the cylinder moves along +x with U_0,
-which is the same by Galilei and cheaper, for a bed at rest needs fewer searches; frame=cylinder is the paper's way (base, lid
-and bed move along -x from the start). Drag is the force along -x, lift along +z, theta = 0 in front and > 0 below.
+The paper holds the cylinder and moves the base with U_0. Here the base is at rest and the cylinder moves along +x with U_0.
+The two are equivalent by Galilean invariance, and a bed at rest is cheaper because it needs fewer neighbour searches;
+frame=cylinder does as the paper does (base, lid and bed move along -x from the start). Drag is the force along -x, lift the force
+along +z; theta = 0 in front and > 0 below.
 
-Three runs of the paper: lid_density=0, depth= (normal); lid_density=60 to 210 (lid); the same with bulk_gravity=0 (lid, and no
-weight in the bulk). The effective depth is h~ = h + (pi d/6) rho*/rho, or the lid's part alone without weight in the bulk;
-rho is the bulk density phi rho_g of the bed at rest, also in the buoyancy rho g pi D^2 L/4, and h is the weight of bed above the
-axis over rho g. Readings: grains of the lid, on a square lattice d apart, are held in x and y and do not turn, so that
-the lid is rough (lid_turns=1 lets them turn; the paper does not say); the base is a square lattice as well; all grains have the
-diameter d (polydispersity= changes it); U_0, which the paper does not give, is 0.1 m/s.
+The paper has three kinds of runs: lid_density=0 and depth= (normal); lid_density=60 to 210 (lid); the same with bulk_gravity=0
+(lid, and no weight in the bulk). The effective depth is h~ = h + (pi d/6) rho*/rho, or only its second term if the bulk has no
+weight; rho is the bulk density phi rho_g of the bed at rest, also in the buoyancy rho g pi D^2 L/4, and h is the weight of bed
+above the axis over rho g. We chose what the paper leaves open: grains of the lid, on a square lattice d apart, are held in x and
+y and do not turn, so that the lid is rough (lid_turns=1 lets them turn); the base is a square lattice as well; all grains have
+the diameter d (polydispersity= changes it); U_0 is 0.1 m/s.
 
-Grains are poured to the cylinder's lowest point, the cylinder is put in, the others are poured. The lid is laid on the bed and
-both come to rest: whenever base and cylinder bear just the weight, all motion is stopped, since a lid swings for long. Averages
-begin where drag and lift pass a test of steadiness, after 2 D at least, and end before the cylinder meets its wake, which
-comes back through the periodic side.
+First grains are poured up to the cylinder's lowest point, then the cylinder is put in, then the other grains are poured. The lid
+is laid on the bed and both come to rest. A lid oscillates for long; therefore all motion is stopped whenever base and cylinder
+carry exactly the weight. Averages begin when drag and lift pass a test of steadiness, after at least 2 D of travel, and end
+before the cylinder meets its own wake, which comes back through the periodic side.
 
-Cost: the paper's size is 190,000 spheres and 2e5 steps for 40 D, an hour or two of two cores; the demo 17,000 and 2e4 steps.
+Cost: the paper's size is 190,000 spheres and 2e5 steps for 40 D, an hour or two on two cores; the demo has 17,000 spheres and 2e4
+steps.
 
     scripts/run lift                                    the demo
     yade -n -x studies/lift.py lid_density=150 bulk_gravity=0 out=no-gradient
@@ -67,87 +69,99 @@ SAMPLE_EVERY = 10  # steps between two samples of the forces
 BLOCK_TRAVEL = 0.25  # d of travel between two rows of the series
 POINTS = 64  # of the stress by angle, with a Gaussian of 8 degrees (A4)
 FIELD_REACH = 20  # d around the body, where the box is as large
-LEAST_PERIOD = 4.1  # largest grains that a period must hold: three, with the skin of the search
-AWAY = 2.0  # D between the body and its wake at the end, and d between the body and lid, surface or base
-USUAL_DRAG = 10.0  # C_d of the paper, to judge beforehand what base and lid can bear
-LEAST_WINDOW = 3.0  # d of travel behind the paper's transient
+LEAST_PERIOD = (
+    4.1  # diameters of the largest grain that a period must hold: three, and the margin of the neighbour search
+)
+AWAY = (
+    2.0  # least distance: in D between the body and its wake at the end, in d between the body and lid, surface or base
+)
+USUAL_DRAG = 10.0  # C_d of the paper, to estimate before a run whether base and lid can hold the bed
+LEAST_WINDOW = 3.0  # d of travel after the paper's transient
 MOST_TRAVEL = 40.0  # D, the paper's
 RATE = (
     7e6  # particle-steps per second of one core: 26,000 stirred grains, 1.3e9 particle-steps in 180 s of processor time
 )
-OVERLAP_KEYS = "lower dt_factor, speed or lid_density, or raise largest_overlap"  # what may help the guard
+OVERLAP_KEYS = (
+    "lower dt_factor, speed or lid_density, or raise largest_overlap"  # advice when the overlap guard stops a run
+)
 
 
 class LiftParameters(StudyParameters):
-    """What the lift study knows; lengths in d, all else SI."""
+    """The parameters of the lift study; lengths in d, all else in SI units."""
 
     unit_system: ClassVar[str] = quantities.SI
 
-    shape: str = quantity("cylinder", "-", "cylinder, or a file: outline swept along y (.csv, .wkt), distance (.py)")
+    shape: str = quantity(
+        "cylinder", "-", "cylinder, or a file: outline swept along y (.csv, .wkt), distance function (.py)"
+    )
     cylinder_diameter: float = quantity(3.3, "d", "D of the cylinder", ge=1, le=1000)
-    depth: float = quantity(52.8, "d", "of the axis below the surface of the bed, without the lid", gt=0)
-    lid_density: float = quantity(100.0, "rho_g", "density of the lid's grains over the others'; 0: no lid", ge=0)
-    bulk_gravity: bool = quantity(True, "-", "gravity acts on all grains; 0: on the lid alone")
+    depth: float = quantity(52.8, "d", "depth of the axis below the surface of the bed, without the lid", gt=0)
+    lid_density: float = quantity(
+        100.0, "rho_g", "density of the lid's grains over that of the others; 0: no lid", ge=0
+    )
+    bulk_gravity: bool = quantity(True, "-", "gravity acts on all grains; 0: only on the lid")
     lid_turns: bool = quantity(False, "-", "grains of the lid may turn")
     speed: float = quantity(0.1, "m/s", "U_0", gt=0, le=20, lever=Lever(0.1, "higher"))
-    frame: Literal["bed", "cylinder"] = quantity("bed", "-", "what is at rest: base and bed, or the cylinder")
+    frame: Literal["bed", "cylinder"] = quantity("bed", "-", "what rests: base and bed, or the cylinder")
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    polydispersity: float = quantity(0.0, "-", "grains' diameters are uniform within this of d", ge=0, lt=0.9)
+    polydispersity: float = quantity(
+        0.0, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9
+    )
     width: float = quantity(140.0, "d", "period of the box in x", gt=0, lever=Lever(140, "lower"))
     breadth: float = quantity(10.0, "d", "period of the box in y", gt=0, lever=Lever(10, "lower"))
     height: float = quantity(120.0, "d", "height of the bed", gt=0, lever=Lever(120, "lower"))
     travel: Optional[float] = quantity(
         None,
         "d",
-        "how far the body is dragged; auto: 40 D, or until 2 D from its wake",
+        "distance over which the body is dragged; auto: 40 D, or less, to end 2 D before its wake",
         gt=0,
         lever=Lever(None, "lower"),
     )
     fields: bool = quantity(True, "-", "average velocity, fraction and stress around the body", watches=True)
     field_spacing: float = quantity(
-        1.0, "d", "distance of the fields' points; it must divide 1 d", gt=0, le=1, watches=True
+        1.0, "d", "distance between the fields' grid points; it must divide 1 d", gt=0, le=1, watches=True
     )
     field_samples: int = quantity(
-        200, "-", "moments that the fields average", ge=1, le=10**6, watches=True, lever=Lever(200, "lower")
+        200, "-", "number of moments in the fields' averages", ge=1, le=10**6, watches=True, lever=Lever(200, "lower")
     )
     frames: int = quantity(
-        1, "-", "pictures of the bed, evenly in time, the last at the end", ge=1, le=9999, watches=True
+        1, "-", "number of pictures of the bed, at equal intervals, the last at the end", ge=1, le=9999, watches=True
     )
     rest: float = quantity(1e-4, "m g d", "kinetic energy per grain at which the bed counts as at rest", gt=0)
     largest_overlap: float = quantity(
-        0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+        0.3, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
-    threads: int = quantity(0, "-", "threads of GrainLoop; 0: what pays", ge=0, le=256, identity=False)
+    threads: int = quantity(0, "-", "threads of GrainLoop; 0: the number that is fastest", ge=0, le=256, identity=False)
 
     @property
     def way(self):
-        """How far the body goes [d]."""
+        """Distance over which the body is dragged [d]."""
         return self.furthest if self.travel is None else self.travel
 
     @property
     def furthest(self):
-        """How far it goes of itself [d]: the paper's 40 D, or as far as the box allows."""
+        """Distance for travel=auto [d]: the paper's 40 D, or as far as the box allows."""
         size = max(self.cylinder_diameter, height_in(self.shape, intruder.contents_of(self.shape)))
         return min(MOST_TRAVEL * self.cylinder_diameter, max(self.width - AWAY * size, 1.0))
 
     def auto_values(self):
-        """Return what is taken for travel=auto."""
+        """Return {key: value} for travel=auto."""
         return {"travel": self.way}
 
     def identity(self):
-        """Return all that decides the result: for a shape from a file its contents too, not the name alone."""
+        """Return all values that decide the result: for a shape from a file the file's contents too, not only its name."""
         told = {"outline": intruder.contents_of(self.shape)} if dragged_body.names_a_file(self.shape) else {}
         return {**super().identity(), **told}
 
 
 @functools.lru_cache(maxsize=None)
 def height_in(shape, _contents):
-    """Return the height [d] of the body that a file describes; 0 for the cylinder and for a file that describes none."""
+    """Return the height [d] of the body that a file describes; 0 for the cylinder and for a file that describes no body."""
     if not dragged_body.names_a_file(shape):
         return 0.0
     try:
         return dragged_body.of_shape(shape, 0.0, D, D).height / D
-    except UsageError:  # `check` will say so
+    except UsageError:  # `check` reports the error later
         return 0.0
 
 
@@ -179,7 +193,7 @@ def body_of(p):
 
 
 def check_room(p, body):
-    """UsageError where the body does not fit into the box, or would come near lid, surface, base or its own wake."""
+    """Raise UsageError if the body does not fit into the box, or comes too near to lid, surface, base or itself."""
     low, high = body.low / D, body.high / D
     size = max(high[0] - low[0], high[2] - low[2])
     if size < 1:
@@ -190,7 +204,7 @@ def check_room(p, body):
     for key in ("width", "breadth"):
         if getattr(p, key) < least:
             raise UsageError(
-                f"{key}={getattr(p, key):g} d must be at least {least:.3g} d, or a grain would meet another through two sides of"
+                f"{key}={getattr(p, key):g} d must be at least {least:.3g} d, or a grain would touch another through two sides of"
                 " the periodic box at once; raise it"
             )
     if p.depth < high[2] + AWAY:
@@ -205,7 +219,7 @@ def check_room(p, body):
         )
     if not body.endless and 2 * (high[1] - low[1]) > p.breadth:
         raise UsageError(
-            f"breadth={p.breadth:g} d must be twice the body's extent of {high[1] - low[1]:.3g} d along y, or more; raise it"
+            f"breadth={p.breadth:g} d must be at least twice the body's extent of {high[1] - low[1]:.3g} d along y; raise it"
         )
     free = p.width - (high[0] - low[0]) - AWAY
     if free <= 0:
@@ -216,7 +230,7 @@ def check_room(p, body):
 
 
 def check_travel(p, body):
-    """UsageError for a travel into the body's own wake, or one that leaves nothing to average."""
+    """Raise UsageError for a travel that reaches the body's own wake, or one that is too short for averages."""
     size = body.height / D
     most, least = p.width - AWAY * size, forces.PAPERS_TRANSIENT * size + LEAST_WINDOW
     if p.way > most + 1e-9:
@@ -226,13 +240,13 @@ def check_travel(p, body):
         )
     if p.way < least:
         raise UsageError(
-            f"travel={p.way:g} d leaves too little behind the transient of {forces.PAPERS_TRANSIENT:g} D; give at least"
+            f"travel={p.way:g} d leaves too little after the transient of {forces.PAPERS_TRANSIENT:g} D; give at least"
             f" {least:.3g} d, and width at least {least + AWAY * size:.3g}"
         )
 
 
 def check_lid(p):
-    """UsageError for a bed without any weight, and for a lid heavier than its grains bear."""
+    """Raise UsageError for a bed without any weight, and for bed and lid that are too heavy for the grains of the base."""
     if not p.bulk_gravity and p.lid_density == 0:
         raise UsageError("bulk_gravity=0 needs a lid to press on the bed; give lid_density, 60 to 210 in the paper")
     grains = material(p)
@@ -242,13 +256,13 @@ def check_lid(p):
     most = grains.terms(D / 2, min(p.largest_overlap, sphere_bed.LARGEST_OVERLAP))["elastic"]
     if at_base > most:
         raise UsageError(
-            f"bed and lid press on a grain of the base by {at_base:.3g} N, but at largest_overlap={p.largest_overlap:g} R it"
-            f" bears {most:.3g} N; lower lid_density={p.lid_density:g} or height={p.height:g}, or raise largest_overlap"
+            f"bed and lid load a grain of the base with {at_base:.3g} N, but at largest_overlap={p.largest_overlap:g} R it can"
+            f" carry only {most:.3g} N; lower lid_density={p.lid_density:g} or height={p.height:g}, or raise largest_overlap"
         )
 
 
 def recipes(p, body):
-    """Return the recipes of the bed around the body and of its lid."""
+    """Return the recipes for the bed around the body and for its lid."""
     bed = sphere_bed.SphereBed(
         width=p.width * D,
         breadth=p.breadth * D,
@@ -270,9 +284,9 @@ def recipes(p, body):
 
 
 def build(p, body, dt, change=None):
-    """Put the bed at rest, its lid, the body, drives and measures into YADE; return ids and what the bed weighs.
+    """Put the bed at rest, its lid, the body, drives and measures into YADE; return ids and the weight of the bed.
 
-    `change(bed, found)`, if given, returns what is taken in place of the bed at rest `found` (`sphere_bed.at_rest`).
+    `change(bed, found)`, if given, returns the bed to use in place of the bed at rest `found` (`sphere_bed.at_rest`).
     """
     from yade import O
 
@@ -304,7 +318,7 @@ def build(p, body, dt, change=None):
 
 
 def drives(p, made):
-    """Return the drives of body and base: one moves with U_0, the other is held by having no velocity."""
+    """Return the drives of body and base: one of them moves with U_0, the other one is held at velocity 0."""
     if p.frame == "bed":
         return [engines.SpinTranslateDrive(body=made["body"], velocity=(p.speed, 0, 0), label="drive")]
     return [engines.SpinTranslateDrive(body=made["base"], velocity=(-p.speed, 0, 0), label="drive")]
@@ -314,7 +328,7 @@ def drives(p, made):
 
 
 def measures(p, body, made):
-    """Return the binners of the forces on body and base and, if asked for, the averager of fields, which sleeps at first."""
+    """Return the binners of the forces on body and base and, if asked for, the averager of fields, which is off at first."""
     about = dict(planeNormal=(0, 1, 0), every=SAMPLE_EVERY)
     binners = [
         engines.ContactForceBinner(body=made["body"], kernel="gaussian", count=POINTS, label="binner", **about),
@@ -324,7 +338,7 @@ def measures(p, body, made):
 
 
 def field_averager(p, body, held):
-    """Return the engine that averages in spheres of radius d around the body, along y (A2, A3)."""
+    """Return the engine that averages fields in spheres of radius d around the body, and along y (A2, A3)."""
     along = min(FIELD_REACH, int(p.width / 2) - 2)
     below, above = min(FIELD_REACH, int(p.height - p.depth)), min(FIELD_REACH, int(p.depth) + 2)
     half = p.breadth * D / 2
@@ -335,7 +349,7 @@ def field_averager(p, body, held):
 
 
 def scene_of(p, body, stage):
-    """Return what the forces are compared with."""
+    """Return the scales that the forces are compared with."""
     return forces.Scene(
         gravity=GRAVITY,
         d=D,
@@ -353,7 +367,7 @@ def scene_of(p, body, stage):
 
 
 def say_what_presses(seen):
-    """Say which pressure acts at the axis, and whether base and lid can bear the drag that the paper leads to expect."""
+    """Print the pressure at the axis, and warn if base and lid cannot hold the bed against the drag expected from the paper."""
     drag = USUAL_DRAG * seen.pressure * seen.area
     print(
         f"effective depth {seen.effective_depth / seen.height:.3g} D, P_0 = {seen.pressure:.4g} Pa, inertial number"
@@ -362,8 +376,8 @@ def say_what_presses(seen):
     )
     if drag > seen.grip:
         print(
-            f"base and lid bear {seen.grip:.3g} N by friction, less than the drag of {drag:.3g} N that C_d ="
-            f" {USUAL_DRAG:g} means: the bed may slip as a whole, and the drag come out too small; raise width",
+            f"friction at base and lid holds at most {seen.grip:.3g} N, less than the drag of {drag:.3g} N at C_d ="
+            f" {USUAL_DRAG:g}: the bed may slip as a whole, and the measured drag may be too small; raise width",
             file=sys.stderr,
         )
 
@@ -372,7 +386,7 @@ def say_what_presses(seen):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the body and the time step over the critical one."""
+    """Refuse values that allow no run; return the body and the ratio of the time step to the critical one."""
     body = body_of(p)
     check_room(p, body)
     check_travel(p, body)
@@ -384,7 +398,7 @@ def check(p):
 
 
 def run(p, folder):
-    """Make the bed, drag the body through it, record the forces; or go on where an interrupted run left off."""
+    """Make the bed, drag the body through it and record the forces; or continue an interrupted run."""
     (body, ratio), march = check(p), YadeMarch()
     if folder.resumed:
         stage = recording.load_stage(folder, march, STAGE)
@@ -416,7 +430,7 @@ STAGE = ("base", "body", "grains", "lid", "load_error", "fraction", *sphere_bed.
 
 
 def record(p, folder, march, stage, seen):
-    """Run in blocks of a quarter of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
+    """Run in blocks of d/4 of travel; record block means of the forces, frames and checkpoints, then fields and means."""
     from yade import O
 
     folder.declare_series(**forces.UNITS)
@@ -451,7 +465,7 @@ def record(p, folder, march, stage, seen):
     )
     summary, angular = forces.steady_state(rows, seen)
     if not summary["steady"]:
-        print("drag or lift is not steady by the test to the end of the run; take a longer travel", file=sys.stderr)
+        print("the test finds drag or lift unsteady up to the end of the run; give a longer travel", file=sys.stderr)
     folder.write("angular", angular, first_travel=summary["steady_from"])
     z, after = profile(p, ids)
     folder.write("profile", dict(z=z, fraction=np.array(stage["fraction"]), fraction_after=after))
@@ -464,7 +478,7 @@ def mean_height(lids):
 
 
 def profile(p, ids):
-    """Return the middles of slabs half a d thick [m] and the volume fraction of the grains in each."""
+    """Return the middles of slabs of thickness d/2 [m] and the volume fraction of the grains in each."""
     rows, edges = scene.rows_of(ids), np.arange(0, p.height + 10, 0.5) * D
     return (edges[1:] + edges[:-1]) / 2, sphere_bed.fraction_by_height(
         rows["z"], rows["r"], edges, p.width * p.breadth * D**2
@@ -472,7 +486,7 @@ def profile(p, ids):
 
 
 def force_means(binner, base):
-    """Return the block means of forces on body and base [N] as a row, and clear both binners."""
+    """Return the block means of the forces on body and base [N] as a row, and clear both binners."""
     (fx, _, fz), (base_fx, _, base_fz) = binner.force, base.force
     row = dict(fx=fx, fz=fz, contacts=binner.contactNumber, base_fx=base_fx, base_fz=base_fz)
     row.update(normal=binner.normalForce, tangential=binner.tangentialForce)
@@ -485,7 +499,7 @@ def force_means(binner, base):
 
 
 def particle_steps(p):
-    """Return grains times steps of a run, the pouring aside."""
+    """Return grains times steps of a run, without the pouring."""
     grains = sphere_bed.BED_FRACTION * p.width * p.breadth * p.height / (np.pi / 6)
     return grains * p.way * D / (p.speed * time_step(p))
 

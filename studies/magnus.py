@@ -1,21 +1,21 @@
-"""Magnus: a disk that spins and translates through a granular gas or liquid is pushed aside, the other way than in a fluid.
+"""Magnus: a disk that spins and moves through a granular gas or liquid is pushed sideways, opposite to the force in a fluid.
 
 System of Kumar, Dhiman, Reddy, "Magnus effect in granular media", Phys. Rev. E 99, 012902 (2019): two dimensions, no
 gravity, a channel of disks periodic in x between two rough walls. The body moves along x with V0 and turns with
 omega_0 = Omega V0/R for all time. SI units: d = 0.02 m, 20 kg/m^2; lengths on the command line in d.
 
-Readings, each a parameter or named here: diameters are uniform within 10 %; the area fraction is that of the area free to
-grains (between the walls' centre lines, without wall disks and body), which gives the paper's 26,000 to 62,000 grains; a
-packing is compressed without friction, since grains of mu = 0.5 jam at 0.81, and with five times the damping, so that it
-comes to rest. Lift is positive along -omega x V, drag along -V. Theta is counter-clockwise from V.
+The paper leaves some choices open. Each of them is a parameter or is stated here. Diameters are uniform within 10 %. The area
+fraction refers to the area free to grains (between the walls' centre lines, without wall disks and body), which gives the
+paper's 26,000 to 62,000 grains. A packing is compressed without friction, since grains of mu = 0.5 jam at 0.81, and with five
+times the damping, so that it comes to rest. Lift is positive along -omega x V, drag along -V. Theta is counter-clockwise from V.
 
 Drag grows as V0^2 and L/D does not depend on V0 (phi = 0.352, Omega = 5, box 150 d x 100 d: D = 0.040 and 4.28 N, L/D = 0.33
-and 0.34, both +- 0.04, at 0.25 and 2.5 m/s), while the steps needed go as 1/V0. At 2.5 m/s a grain that the body hits
-overlaps it by 1.5 % of a radius. What the demo's longer step changes is measured: see the end of help.
+and 0.34, both +- 0.04, at 0.25 and 2.5 m/s), while the number of steps is proportional to 1/V0. At 2.5 m/s a grain that the body
+hits overlaps it by 1.5 % of a radius. The effect of the demo's longer time step was measured: see the end of help.
 
 Cost on one core: the paper's size is 26,500 to 61,700 disks and 1.2e7 steps at 0.25 m/s, a quarter of an hour (phi = 0.352)
-to an hour and a half (0.818); the demo is 6,600 disks and 2.4e6 steps, a minute or two. A shorter channel means a shorter
-travel: after one length the body meets its own wake, which never refills.
+to an hour and a half (0.818); the demo is 6,600 disks and 2.4e6 steps, a minute or two. A shorter channel allows only a shorter
+travel: after one channel length the body meets its own wake, which never refills.
 
     scripts/run magnus                                  the demo
     yade -n -x studies/magnus.py phi=0.818 spin_ratio=10 scale=paper out=dense
@@ -55,19 +55,24 @@ DENSITY = 20.0  # kg/m^2
 TIME_STEP = 2e-6  # s, the paper's
 SAMPLE_EVERY = 10  # steps; a contact at 5 m/s lasts 60
 BLOCK_TRAVEL = 0.1  # d of travel between two rows of the series
-LOOK_EVERY = 50  # blocks between two looks at the error
+LOOK_EVERY = 50  # blocks between two estimates of the error
 CLOSING_SPEED, REST_SPEED = 1.0, 5e-3  # m/s, of the walls that compress a packing, and of grains that count as at rest
 PREPARATION_DAMPING = 5  # times gamma while a packing is made, so that grains without friction come to rest
-FIELD_REACH = 10, 2  # d around the body, or so many of its diameters where it is large; half as much again behind it
-FEWEST_BLOCKS = 200  # in the steady window before its error is believed
-LEAST_WINDOW = 0.5  # d of travel to average, or there would be no error
-OVERLAP_KEYS = "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # what may help the guard
+FIELD_REACH = (
+    10,
+    2,
+)  # reach around the body: d, or diameters of a large body; behind it the fields reach 1.5 times as far
+FEWEST_BLOCKS = 200  # in the steady window before its error can stop the run
+LEAST_WINDOW = 0.5  # d of travel to average; with less no error can be estimated
+OVERLAP_KEYS = (
+    "lower dt_factor, v0, spin_ratio or wall_pressure, or raise largest_overlap"  # advice of the overlap guard
+)
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((0.352, 0.818), (313e6, 88e6))  # area fraction, particle-steps per second of one core (README)
 
 
 class MagnusParameters(intruder.BodyParameters):
-    """What the Magnus study knows; lengths in d, all else SI."""
+    """The parameters of the Magnus study; lengths in d, all else in SI units."""
 
     unit_system: ClassVar[str] = quantities.SI
 
@@ -75,51 +80,69 @@ class MagnusParameters(intruder.BodyParameters):
     v0: float = quantity(0.25, "m/s", "speed of the body along x", gt=0, le=20)
     spin_ratio: float = quantity(5.0, "-", "Omega = omega_0 R/V0, positive counter-clockwise", ge=-1000, le=1000)
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    width: float = quantity(300.0, "d", "length of the channel in x, a whole number", gt=0, lever=Lever(300, "lower"))
-    height: float = quantity(200.0, "d", "height of the channel, walls included", gt=0, lever=Lever(200, "lower"))
-    travel: Optional[float] = quantity(
-        None, "d", "how far the body goes; auto: the channel's length, the most", gt=0, lever=Lever(None, "lower")
+    width: float = quantity(
+        300.0, "d", "length of the channel along x, a whole number", gt=0, lever=Lever(300, "lower")
     )
-    settle_travel: float = quantity(30.0, "d", "travel that the averages leave out at least", ge=0)
+    height: float = quantity(200.0, "d", "height of the channel, including the walls", gt=0, lever=Lever(200, "lower"))
+    travel: Optional[float] = quantity(
+        None,
+        "d",
+        "distance that the body travels, at most (auto) the channel's length",
+        gt=0,
+        lever=Lever(None, "lower"),
+    )
+    settle_travel: float = quantity(30.0, "d", "least travel before the averages begin", ge=0)
     until_error: float = quantity(
         0.0,
         "-",
-        "standard error of L/D at which the run may end (chance favours low ones); 0: never",
+        "end the run once the estimated standard error of L/D, itself uncertain, is below this; 0: never",
         ge=0,
     )
-    intruder_diameter: float = quantity(5.0, "d", "diameter of the disk; longer side of another shape", ge=1)
-    shape: str = quantity("disk", "-", "disk, or another shape as beads: square, tall, wide, triangle, or a file")
-    bead_diameter: float = quantity(0.5, "d", "diameter of the beads of a shape other than the disk", gt=0)
-    polydispersity: float = quantity(0.1, "-", "grains' diameters are uniform within this of d", ge=0, lt=0.9)
-    wall_pressure: float = quantity(0.0, "N/m", "walls are free and pushed inwards by this; 0: they stand", ge=0)
+    intruder_diameter: float = quantity(5.0, "d", "diameter of the disk, or longer side of another shape", ge=1)
+    shape: str = quantity("disk", "-", "disk, or another shape made of beads: square, tall, wide, triangle, or a file")
+    bead_diameter: float = quantity(0.5, "d", "bead diameter of a shape other than the disk", gt=0)
+    polydispersity: float = quantity(
+        0.1, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9
+    )
+    wall_pressure: float = quantity(
+        0.0, "N/m", "force per length that pushes the walls inwards; 0: the walls are fixed", ge=0
+    )
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing", watches=True)
-    field_spacing: float = quantity(0.05, "d", "edge of the fields' bins; it must divide 1 d", gt=0, le=1, watches=True)
+    field_spacing: float = quantity(
+        0.05, "d", "side of the fields' square bins; it must divide 1 d", gt=0, le=1, watches=True
+    )
     field_samples: int = quantity(
-        1000, "-", "moments that the fields average", ge=1, le=10**6, watches=True, lever=Lever(1000, "lower", 4)
+        1000,
+        "-",
+        "number of moments in the fields' averages",
+        ge=1,
+        le=10**6,
+        watches=True,
+        lever=Lever(1000, "lower", 4),
     )
     frames: int = quantity(
         1,
         "-",
-        "pictures of the channel that are kept, evenly in time, the last at the end",
+        "number of pictures of the channel to keep, at equal intervals, the last at the end",
         ge=1,
         le=9999,
         watches=True,
     )
     largest_overlap: float = quantity(
-        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+        0.1, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
 
     @property
     def way(self):
-        """How far the body goes [d]."""
+        """Distance that the body travels [d]."""
         return self.width if self.travel is None else self.travel
 
     def auto_values(self):
-        """Return what is taken for travel=auto."""
+        """Return {key: value} for travel=auto."""
         return {"travel": self.way}
 
     def identity(self):
-        """Return all that decides the result; travel=auto counts as itself, so that older runs are found again."""
+        """Return all values that decide the result; travel=auto stays "auto" there, so that older runs are found again."""
         return {**super().identity(), "travel": self.travel}
 
     @property
@@ -144,20 +167,20 @@ def time_step(p):
 
 
 def material(mu, damping=1):
-    """The paper's grains, Table I, with friction `mu` and so many times its damping."""
+    """The paper's grains, Table I, with friction `mu` and `damping` times the paper's damping."""
     return HertzHistoryMaterial(2e9, 2.45e9, damping * 8e6, damping * 8e6, mu, DENSITY)
 
 
 def check_room(p):
-    """The body must fit between the walls, and must not meet its own wake."""
+    """Raise UsageError if the body does not fit between the walls, meets its own wake or travels too little for averages."""
     if p.way > p.width:
         raise UsageError(
             f"travel={p.way:g} d is longer than the channel: the body would meet its wake; raise width={p.width:g}"
         )
     if p.way - p.settle_travel < LEAST_WINDOW:
         raise UsageError(
-            f"travel={p.way:g} d leaves nothing to average after settle_travel={p.settle_travel:g} d, at least {LEAST_WINDOW} d"
-            " are needed; raise travel and width"
+            f"travel={p.way:g} d leaves too little to average after settle_travel={p.settle_travel:g} d, where at least"
+            f" {LEAST_WINDOW} d are needed; raise travel and width"
         )
     fields.check_spacing(p.field_spacing)
     channel.check_room(p.width, p.height, p.intruder_diameter)
@@ -168,16 +191,16 @@ def check_room(p):
 
 
 def check_load(p, grains):
-    """UsageError for walls that a pressure presses into grains further than the overlap allowed; mu plays no part."""
+    """Raise UsageError for a pressure whose overlap of walls and grains exceeds the largest one allowed, whatever mu is."""
     if p.wall_pressure * D > (most := grains.force_between(D / 2, p.largest_overlap)):
         raise UsageError(
-            f"wall_pressure={p.wall_pressure:g} N/m presses grains into each other by more than largest_overlap="
-            f"{p.largest_overlap:g} R; at most {most / D:.3g} N/m are possible"
+            f"wall_pressure={p.wall_pressure:g} N/m makes grains overlap by more than largest_overlap="
+            f"{p.largest_overlap:g} R; give at most {most / D:.3g} N/m"
         )
 
 
 def recipe(p, body):
-    """Return the recipe of the channel around the held body."""
+    """Return the recipe for the channel around the held body."""
     return channel.ChannelRecipe(
         width=p.width * D,
         height=p.height * D,
@@ -195,12 +218,12 @@ def recipe(p, body):
 
 
 def packing(p, body):
-    """Return the channel's grains around the held body, from the cache or by making them."""
+    """Return the channel's grains around the held body, from the cache or newly made."""
     return channel.channel(recipe(p, body))
 
 
 def add_walls(p):
-    """Add the rough walls and return the ids of their disks, and those of the clumps that a pressure moves."""
+    """Add the rough walls; return the ids of their disks, and the ids of the clumps that a pressure moves."""
     heights = [side * (p.height - 1) * D / 2 for side in (-1, 1)]
     if p.wall_pressure == 0:
         return [id_ for y in heights for id_ in scene.add_base(p.width * D, D, DENSITY, y)], []
@@ -209,7 +232,7 @@ def add_walls(p):
 
 
 def build(p, grains, dt, body):
-    """Put walls, grains, body, drive and measures into YADE; return ids (first, behind the last), phi, grains' area."""
+    """Put walls, grains, body, drive and measures into YADE; return ids (first, last + 1), phi, grains' area."""
     from yade import O
 
     packed = packing(p, body)
@@ -226,7 +249,7 @@ def build(p, grains, dt, body):
 
 
 def area_fraction(p, stage):
-    """Return the area fraction where the walls are now: a pressure may have moved them."""
+    """Return the area fraction for the present positions of the walls, which a pressure may have moved."""
     apart = scene.height_of(stage["walls"][-1]) - scene.height_of(stage["walls"][0])
     return channel.fraction_after(stage["phi"], stage["grain_area"], p.width * D * (apart - (p.height - 1) * D))
 
@@ -235,7 +258,7 @@ def area_fraction(p, stage):
 
 
 def imposed_motion(p, held):
-    """Return the drive that imposes all of the body's motion."""
+    """Return the drive that imposes the body's whole motion."""
     return engines.SpinTranslateDrive(body=held, velocity=(p.v0, 0, 0), spin=(0, 0, p.spin), label="drive")
 
 
@@ -243,13 +266,13 @@ def imposed_motion(p, held):
 
 
 def measures(p, held, dt):
-    """Return the binner of the forces on the body and, if asked for, the averager of fields, asleep until the steady state."""
+    """Return the binner of the forces on the body and, if asked for, the averager of fields, off until the steady state."""
     binner = engines.ContactForceBinner(body=held, reference="motion", every=SAMPLE_EVERY, label="binner")
     return [binner, field_averager(p, held, dt)] if p.fields else [binner]
 
 
 def field_reach(p):
-    """Return how far the fields reach around the body [d], a whole number."""
+    """Return the distance to which the fields reach around the body [d], a whole number."""
     least, diameters = FIELD_REACH
     return min(max(least, int(diameters * p.intruder_diameter)), int(p.width / 2.5), int(p.height / 2))
 
@@ -264,11 +287,11 @@ def field_averager(p, held, dt):
 
 
 def say_if_not_resolved(p, found):
-    """Say that the channel was too short for the error of L/D that was asked for."""
+    """Warn if the channel was too short for the error of L/D that was asked for."""
     if p.until_error and not found.is_good_to(p.until_error, FEWEST_BLOCKS):
         print(
-            f"one channel length did not give L/D to {p.until_error:g}: its error is {found.summary['lift_to_drag_err']:.2g};"
-            " average over seeds, or take a longer channel",
+            f"one channel length was too short for a standard error of L/D of {p.until_error:g}: it is"
+            f" {found.summary['lift_to_drag_err']:.2g}; average over seeds, or give a longer channel",
             file=sys.stderr,
         )
 
@@ -277,7 +300,7 @@ def say_if_not_resolved(p, found):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the body and the time step over the critical one."""
+    """Refuse values that allow no run; return the body and the ratio of the time step to the critical one."""
     check_room(p)
     dt, grains = time_step(p), material(p.mu)
     check_load(p, grains)
@@ -289,7 +312,7 @@ def check(p):
 
 
 def run(p, folder):
-    """Make the channel, drive the body through it, record the forces; or go on where an interrupted run left off."""
+    """Make the channel, drive the body through it and record the forces; or continue an interrupted run."""
     (body, ratio), dt, grains, march = check(p), time_step(p), material(p.mu), YadeMarch()
     if folder.resumed:
         stage = recording.load_stage(folder, march, ("walls", "grains", "body", "phi", "grain_area"))
@@ -302,7 +325,7 @@ def run(p, folder):
 
 
 def record(p, folder, march, stage):
-    """Run in blocks of a tenth of d of travel; keep block means of the forces, frames, checkpoints, then fields and means."""
+    """Run in blocks of d/10 of travel; record block means of the forces, frames and checkpoints, then fields and means."""
     from yade import O
 
     folder.declare_series(**UNITS)
@@ -354,7 +377,7 @@ def particle_steps(p):
 
 
 def rate(p):
-    """Return the particle-steps per second of one core: `RATES`, interpolated, and the same beyond."""
+    """Return the particle-steps per second of one core: `RATES`, interpolated, and constant outside their range."""
     return float(np.interp(p.phi, *RATES))
 
 

@@ -1,21 +1,21 @@
-"""Rounding: how runs in double and single precision drift from one with 150 digits, and whose averages agree all the same.
+"""Rounding: how far runs in double and single precision drift from a run with 150 digits, and which averages still agree.
 
-Elastic disks without friction under a linear spring (YADE's Law2_ScGeom_FrictPhys_CundallStrack), computed with six kinds of
-numbers from the same first state, bit for bit: YADE's builds with 150 decimal digits, 113, 64 and 53 bits, each a program of its
-own, and GrainLoop in double and in single precision. The first is the truth of the others. Units are the disks' diameter d and
-mass m, and t_0, with k_n = 512 m/t_0^2; a contact of two disks takes 0.098 t_0, a hundred steps at dt_factor=1.
+Elastic disks without friction with a linear spring (YADE's Law2_ScGeom_FrictPhys_CundallStrack) are computed with six number
+types from the same first state, bit for bit: by YADE's builds with 150 decimal digits, 113, 64 and 53 bits, each a separate
+program, and by GrainLoop in double and in single precision. The first one is the reference for the others. Units are the disks'
+diameter d and mass m, and t_0, with k_n = 512 m/t_0^2; a contact of two disks takes 0.098 t_0, a hundred steps at dt_factor=1.
 
 chaotic: disks that collide in a periodic square, area fraction 0.44. A difference grows as exp(rate t), with the Lyapunov rate of
-the scene, whatever the numbers; their length only says where it starts, so that one more bit predicts ln 2/rate longer. Averages
-over a long window (kinetic energy, pressure by motion and contacts, the velocities' distribution) are compared where trajectories
-have nothing in common any more.
+the scene, with any number type; the number of bits only decides how small the difference is at first, so that each further bit
+makes the prediction valid for ln 2/rate longer. Averages over a long window (kinetic energy, pressure by motion and contacts, the
+velocities' distribution) are compared at times when the trajectories are no longer correlated.
 
-regular: disks that swing in wells between two held disks each and do not touch each other. A difference grows by a power of
-time, 1/2 where roundings add up at random, 1 where they change the frequency. In single precision GrainLoop rounds contacts, not
-places and velocities: that shifts forces, which is seen at once and grows little.
+regular: disks that oscillate, each in a well between two held disks, and do not touch each other. A difference grows with a power
+of time: 1/2 if rounding errors add up at random, 1 if they change the frequency. In single precision GrainLoop rounds contacts,
+not positions and velocities: this shifts forces, so the difference appears at once and then grows little.
 
-Cost on one core: the run with 150 digits takes most of it, some 40,000 particle-steps a second; the demo a minute or two.
-Ctrl-C ends the programs too; resume=1 goes on behind the last program of a checkpoint.
+Cost on one core: the run with 150 digits takes most of the time, at some 40,000 particle-steps per second; the demo takes a
+minute or two. Ctrl-C ends the programs too; resume=1 continues after the last program that a checkpoint holds.
 
     scripts/run rounding                                       the chaotic scene
     scripts/run rounding scene=regular
@@ -56,33 +56,33 @@ EVERY = 0.125  # between two rows [t_0]
 SPEED = 1.0  # largest velocity along each axis at the start [d/t_0]
 SPACING = 4 / 3  # of the disks at the start [d]
 GRAVITY = 16.0  # in the regular scene [d/t_0^2]
-AVERAGED = ("longdouble", "double", "single")  # that go on for average_time
+AVERAGED = ("longdouble", "double", "single")  # number types whose runs continue for average_time
 COMPARED = [name for name in TYPES if name != TRUTH]
 GRAINS = dict(chaotic=36, regular=12)
-# Particle-steps per second of one busy core, and the seconds that a program takes to begin.
+# Particle-steps per second of one busy core, and the seconds that a program takes to start.
 RATES = dict(mpfr150=4e4, float128=2e5, longdouble=7e5, yade_double=2e6, double=3e6, single=3e6)
 BEGIN = 3.0
 
 
 class RoundingParameters(StudyParameters):
-    """What the rounding study knows; lengths in d, masses in m, times in t_0."""
+    """The parameters of the rounding study; lengths in d, masses in m, times in t_0."""
 
-    scene: Literal["chaotic", "regular"] = quantity("chaotic", "-", "disks that collide, or each in a well of its own")
+    scene: Literal["chaotic", "regular"] = quantity("chaotic", "-", "disks that collide, or disks in separate wells")
     grains: Optional[int] = quantity(
-        None, "-", "number of disks, in the chaotic scene a square number; auto: 36, regular 12", ge=2, le=1024
+        None, "-", "number of disks, a square number if chaotic; auto: 36 if chaotic, 12 if regular", ge=2, le=1024
     )
-    time: float = quantity(40.0, "t_0", "how long trajectories are compared", gt=0, le=1e5)
+    time: float = quantity(40.0, "t_0", "time for which trajectories are compared", gt=0, le=1e5)
     average_time: float = quantity(
         300.0,
         "t_0",
-        "how long runs with 64, 53 and 24 bits go on for averages, chaotic scene; 0: no averages",
+        "further time of the runs with 64, 53 and 24 bits, for averages (chaotic scene); 0: no averages",
         ge=0,
         le=1e6,
     )
     relax_time: float = quantity(20.0, "t_0", "time at the start that averages leave out", ge=0)
 
     def auto_values(self):
-        """Return what is taken for grains=auto."""
+        """Return {key: value} for grains=auto."""
         return {"grains": self.grains or GRAINS[self.scene]}
 
     @property
@@ -109,7 +109,7 @@ def every(p):
 
 
 def steps_of(p, name=TRUTH):
-    """Return the steps of the run with the numbers `name`, whole rows and the one step by which they begin later."""
+    """Return the steps of the run with the number type `name`: whole rows, and one step before the first row."""
     long = p.averages and name in AVERAGED
     return every(p) * max(1, round((max(p.time, p.average_time) if long else p.time) / (every(p) * time_step(p)))) + 1
 
@@ -120,23 +120,29 @@ def critical_step(p):
 
 
 def check(p):
-    """Refuse values that no run can be made of, and programs that are missing; return the time step over the critical one."""
+    """Refuse values that allow no run, and missing programs; return the ratio of the time step to the critical one."""
     for kind in TYPES.values():
         number_types.modules_of(kind.build)
     if p.loop != "grain" or p.precision != "double":
         raise UsageError(
-            f"loop={p.loop} precision={p.precision}: the rounding study runs both loops in every precision; leave them away"
+            f"loop={p.loop} precision={p.precision}: the rounding study runs both loops in every precision; leave these keys out"
         )
     if p.exports:
-        raise UsageError(f"export={','.join(p.exports)} writes pictures of grains, and the rounding study keeps none")
+        raise UsageError(
+            f"export={','.join(p.exports)} needs pictures of grains; the rounding study keeps none; leave it out"
+        )
     grains, ratio = p.taken()["grains"], time_step(p) / critical_step(p)
     if p.scene == "chaotic" and math.isqrt(grains) ** 2 != grains:
-        raise UsageError(f"grains of the chaotic scene stand on a square at first: a square number, got {grains}")
+        raise UsageError(
+            f"the chaotic scene begins with grains on a square lattice: give a square number, got grains={grains}"
+        )
     if p.scene == "chaotic" and grains < 9:
-        raise UsageError(f"grains={grains}: in the chaotic scene 9 at least, or disks would meet their own images")
+        raise UsageError(
+            f"grains={grains} must be at least 9 in the chaotic scene, or disks would meet their own images"
+        )
     if ratio >= 0.5:
         raise UsageError(
-            f"dt_factor={p.dt_factor:g} makes steps of {ratio:.2g} of the critical one; keep it below a half"
+            f"dt_factor={p.dt_factor:g} gives a time step of {ratio:.2g} times the critical one; this ratio must stay below 0.5"
         )
     if p.averages and p.relax_time + 20 * EVERY > p.average_time:
         raise UsageError(
@@ -149,21 +155,21 @@ def check(p):
 
 
 def short(number):
-    """Return a number with 20 binary digits behind the point: it means the same in all programs."""
+    """Return a number rounded to 20 binary digits after the point, which has the same value in all programs."""
     return round(number * 2**20) / 2**20
 
 
 def scene(p):
-    """Return the scene without loop and steps, as `number_types.run` takes it."""
+    """Return the scene without loop and number of steps, in the form that `number_types.run` takes."""
     dt = time_step(p)
     made = dict(dt=dt, young=2 * STIFFNESS, every=every(p), exact_until=steps_of(p))
     return dict(made, **(colliding(p) if p.scene == "chaotic" else wells(p)))
 
 
 def colliding(p):
-    """Return disks on a square lattice in a periodic square, velocities even in [-1, 1] along each axis, opposite in pairs.
+    """Return disks on a square lattice in a periodic square, with velocities uniform in [-1, 1] along each axis.
 
-    So the momentum is 0, to the last bit; of an odd number of disks the last one rests.
+    Velocities are opposite in pairs, so the momentum is exactly 0; if the number of disks is odd, the last one rests.
     """
     rng, columns = random.Random(p.seed), math.isqrt(p.taken()["grains"])
     places = [(short((k + 0.5) * SPACING), short((j + 0.5) * SPACING)) for k in range(columns) for j in range(columns)]
@@ -179,7 +185,7 @@ def side(p):
 
 
 def wells(p):
-    """Return disks between two held ones each, which they never leave, a little off the place of rest."""
+    """Return disks, each of which stays between two held disks and starts a little off its position of rest."""
     rng, disks = random.Random(p.seed), []
     for k in range(p.taken()["grains"]):
         x = 4.0 * (k - p.taken()["grains"] // 2)
@@ -192,7 +198,7 @@ def wells(p):
 
 
 class Programs:
-    """A march whose steps are programs: each runs the scene with the next kind of numbers and leaves its rows."""
+    """A march whose steps are programs: each program runs the scene with the next number type and writes its rows."""
 
     unit, size = "programs", 0
 
@@ -204,7 +210,7 @@ class Programs:
         return float(self.done)
 
     def file(self, name):
-        """Return the file with the rows of the numbers `name`."""
+        """Return the file with the rows of the number type `name`."""
         return self.place / f"{name}.rows"
 
     def advance(self, steps):
@@ -224,21 +230,21 @@ class Programs:
 
 
 def run(p, folder):
-    """Run all programs, one after the other, and compare what they have found."""
+    """Run all programs, one after the other, and compare their results."""
     recording.announce(folder, grains=p.taken()["grains"], dt=time_step(p), ratio=check(p), unit="t_0")
     folder.declare_series(t="t_0", **{f"distance_{name}": "d" for name in COMPARED})
     with tempfile.TemporaryDirectory(prefix="graindrive-rounding-") as place:
         march = Programs(p, place)
         if folder.resumed:
             recording.load_stage(folder, march)
-        label = f"{len(TYPES)} kinds of numbers"
+        label = f"{len(TYPES)} number types"
         recording.run_sampled(folder, march, len(TYPES), 1, lambda done: None, label=label)
         compare(p, folder, {name: number_types.read(march.file(name)) for name in TYPES})
     folder.note(steps=steps_of(p))
 
 
 def compare(p, folder, rows):
-    """Write distances from the truth, and what follows from them; then averages."""
+    """Write the distances from the reference and the results derived from them; then write the averages."""
     exact = len(rows[TRUTH].steps)
     t, period = rows[TRUTH].steps * time_step(p), side(p) if p.scene == "chaotic" else 0.0
     apart = {name: distances.distances(rows[name].place[:exact], rows[TRUTH].place, period) for name in COMPARED}
@@ -263,7 +269,7 @@ def put(folder, found):
 
 
 def average(p, folder, rows):
-    """Write the averages over the long window of `AVERAGED`, and how far those of double and single are off."""
+    """Write the averages of `AVERAGED` over the long window, and the errors of those of double and single."""
     means, shapes = {}, {}
     for name in AVERAGED:
         late = rows[name].steps * time_step(p) > p.relax_time
@@ -293,7 +299,7 @@ def particle_steps(p):
 
 def rate(p):
     """Return the particle-steps per second of one core, over all programs."""
-    grains = p.taken()["grains"] * (1 if p.scene == "chaotic" else 4)  # each has two contacts all the time
+    grains = p.taken()["grains"] * (1 if p.scene == "chaotic" else 4)  # each has two contacts at all times
     return particle_steps(p) / sum(BEGIN + grains * steps_of(p, name) / RATES[name] for name in TYPES)
 
 

@@ -1,26 +1,28 @@
-"""Shear: disks between sides that slide past each other show what stress a granular flow needs: mu(I) and phi(I).
+"""Shear: a cell of disks under homogeneous shear measures the stress of a granular flow: mu(I) and phi(I).
 
-Homogeneous shear in two dimensions without gravity and without walls: v_x = shear_rate y in a cell whose images slide past
-each other (Lees, Edwards 1972). This is how Oba, Otsuki 2025 (appendix B) found the constants of
+Homogeneous shear in two dimensions without gravity and without walls: v_x = shear_rate y in a cell whose periodic images slide
+past each other (Lees, Edwards 1972). Oba, Otsuki 2025 (appendix B) found in this way the constants of
 mu(I) = mu_s + (mu_2 - mu_s)/(I_0/I + 1), I = shear_rate d sqrt(rho/p), for their drum. Disks and law are the drum's:
 diameters uniform in d to 1.2 d, linear spring and dashpot with k_n = 2e5 m g/d, k_t = 2/7 k_n, friction 0.5, restitution
-0.92, where m is the mass of a disk of diameter d. Units are d, rho, g, though nothing falls: numbers compare with the drum's.
+0.92, where m is the mass of a disk of diameter d. Units are d, rho, g although there is no gravity, so that numbers can be
+compared with the drum's.
 
-Either the cell's height answers to a pressure, dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 and g_p = sqrt(m k_n) (after
-da Cruz et al., PRE 72, 021309 (2005)), and one run has one I; or the area fraction is held, as in the drum paper, with
-shear_rate as a key of its own: there p follows, and with it I.
+There are two kinds of runs. In the first the cell's height adapts to a pressure, dL/dt = (p - P) L/g_p with
+p = (s_xx + s_yy)/2 and g_p = sqrt(m k_n) (after da Cruz et al., PRE 72, 021309 (2005)), and one run has one I. In the second the
+area fraction is constant, as in the drum paper, and shear_rate is given; p and I are then results.
 
-The law holds up to I = 0.2; beyond, grains collide in pairs, and mu stops to grow. At the drum paper's area fraction the disks
-are jammed: what flows there are soft grains, whose mu is lower (studies/RESULTS.md).
+The law holds up to I = 0.2; at larger I grains collide in pairs, and mu stops growing. At the drum paper's area fraction the
+disks are jammed: they flow only because they are soft, and their mu is lower (studies/RESULTS.md).
 
-The pressure is a choice: grains count as stiff where k_n/P is large. 25 rho g d, that of a drum 38 d deep, makes it 6,280; runs
-at a quarter and four times the pressure, at equal I, show what that changes (studies/RESULTS.md).
+The pressure is our choice: grains behave as stiff ones if k_n/P is large. At 25 rho g d, the pressure in a drum 38 d deep, k_n/P
+is 6,280; runs at a quarter and four times the pressure, at equal I, show the effect of this choice (studies/RESULTS.md).
 
-Measured are tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses, contacts of a
-grain, each with the error of a correlated series, and how far the velocity profile is from a straight line.
+The study measures tau, p, their parts by contacts and motion, mu = tau/p, phi, I, the difference of the normal stresses and the
+contacts per grain, each with the error of a correlated series, and the deviation of the velocity profile from a straight line.
 
-Cost on one core: steps go as strain/I, some 50 us each with 400 disks at small I, and 100 us and more at I > 0.1, where the sides
-are fast and lists are made anew every few steps; the demo at I = 0.1 takes seconds, I = 1e-3 some minutes.
+Cost on one core: the number of steps is proportional to strain/I. With 400 disks a step takes some 50 us at small I, and 100 us
+and more at I > 0.1, where the periodic images slide fast and neighbour lists are rebuilt every few steps; the demo at I = 0.1
+takes seconds, I = 1e-3 some minutes.
 
     scripts/run shear                                          the demo, I = 0.1
     scripts/run shear inertial_number=0.001 out=slow
@@ -54,36 +56,34 @@ from graindrive.scenes.yade_march import YadeMarch  # noqa: E402
 
 TIME_STEP = 1e-4  # sqrt(d/g), the drum paper's: 50 steps a contact
 STRAIN_OF_ROW = 0.02  # between two rows of the series
-MEASURE_EVERY = 5  # steps; the height answers as often
+MEASURE_EVERY = 5  # steps; the height adapts as often
 FEWEST_GRAINS = 60  # with fewer the cell is too short for the search
-FEWEST_ROWS = 4  # that the averages go over
-MOST_STRAIN_OF_ROW = 0.05  # rows of MEASURE_EVERY steps are no shorter than these make them
-HELD_WITHIN = 0.1  # of the pressure, the mean one, or 3 of its errors
-# Particle-steps per second of one busy core with 400 disks by I: where the sides are fast lists are made anew every few steps.
+FEWEST_ROWS = 4  # least number of rows for the averages
+MOST_STRAIN_OF_ROW = 0.05  # largest strain of a row; a row has at least MEASURE_EVERY steps
+HELD_WITHIN = 0.1  # relative tolerance of the mean pressure, or 3 of its errors if they are larger
+# Particle-steps per second of one busy core with 400 disks by I: at large I neighbour lists are rebuilt every few steps.
 RATES = ((0.001, 0.01, 0.1, 0.5), (9e6, 7e6, 3.5e6, 1.4e6))
 
 
 class ShearParameters(StudyParameters):
-    """What the shear study knows; lengths in d, densities in rho, times in sqrt(d/g)."""
+    """The parameters of the shear study; lengths in d, densities in rho, times in sqrt(d/g)."""
 
     unit_system: ClassVar[str] = quantities.GRAIN
 
     inertial_number: float = quantity(0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10)
-    shear_rate: Optional[float] = quantity(
-        None, "sqrt(g/d)", "dv_x/dy; auto: that of inertial_number at the pressure", gt=0
-    )
-    pressure: float = quantity(25.0, "rho g d", "P to which the height answers", gt=0)
+    shear_rate: Optional[float] = quantity(None, "sqrt(g/d)", "dv_x/dy; auto: from inertial_number and pressure", gt=0)
+    pressure: float = quantity(25.0, "rho g d", "P, the pressure that the height adapts to", gt=0)
     area_fraction: float = quantity(
-        0.0, "-", "hold this area fraction in place of the pressure; 0: hold the pressure", ge=0, le=0.9
+        0.0, "-", "keep this area fraction constant; 0: keep the pressure constant", ge=0, le=0.9
     )
-    settle_strain: float = quantity(2.0, "-", "strain that the averages leave out at least", ge=0)
+    settle_strain: float = quantity(2.0, "-", "least strain before the averages begin", ge=0)
     strain: float = quantity(8.0, "-", "strain of the whole run", gt=0, lever=Lever(20, "lower"))
     grains: int = quantity(600, "-", "number of disks", ge=FEWEST_GRAINS, le=1_000_000, lever=Lever(4000, "lower"))
     friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
     restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
     stiffness: float = quantity(2e5, "m g/d", "k_n of the spring; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
     largest_overlap: float = quantity(
-        0.1, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+        0.1, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
 
     @property
@@ -92,7 +92,7 @@ class ShearParameters(StudyParameters):
         return self.inertial_number * np.sqrt(self.pressure) if self.shear_rate is None else self.shear_rate
 
     def auto_values(self):
-        """Return what is taken for shear_rate=auto."""
+        """Return {key: value} for shear_rate=auto."""
         return {"shear_rate": float(self.rate)}
 
 
@@ -122,7 +122,7 @@ def steps_of(p):
 
 
 def cell(p):
-    """Return the recipe of the sheared cell."""
+    """Return the recipe for the sheared cell."""
     return shear_cell.ShearCell(
         grains=p.grains,
         stiffness=p.stiffness,
@@ -137,14 +137,14 @@ def cell(p):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the time step over the critical one."""
+    """Refuse values that allow no run; return the ratio of the time step to the critical one."""
     if p.exports:
         raise UsageError(
-            f"export={','.join(p.exports)} writes pictures of the grains, and the shear study keeps none; leave it away"
+            f"export={','.join(p.exports)} needs pictures of the grains, and the shear study keeps none; leave it out"
         )
     if p.shear_rate is not None and not p.area_fraction:
         raise UsageError(
-            f"shear_rate={p.shear_rate:g} is a key of runs at constant area_fraction; at constant pressure give inertial_number"
+            f"shear_rate={p.shear_rate:g} needs a constant area_fraction; at constant pressure give inertial_number instead"
         )
     progress.require_feasible(p.strain / (p.rate * time_step(p)), "raise dt_factor or the shear, or lower strain")
     ratio = cell(p).check(time_step(p), p.largest_overlap)
@@ -154,30 +154,31 @@ def check(p):
 
 
 def check_rows(p):
-    """UsageError where the rows of the series are too long, or too few for averages."""
+    """Raise UsageError if the rows of the series are too long, or too few for averages."""
     row = p.rate * time_step(p) * block_of(p)
     if row > MOST_STRAIN_OF_ROW * (1 + 1e-9):
         raise UsageError(
-            f"at shear_rate={p.rate:.3g} {MEASURE_EVERY} steps, the shortest row of the series, shear by {row:.3g}, more than"
-            f" {MOST_STRAIN_OF_ROW:g}; lower dt_factor or the shear"
+            f"at shear_rate={p.rate:.3g} the shortest row of the series, {MEASURE_EVERY} steps, has a strain of {row:.3g}, more"
+            f" than {MOST_STRAIN_OF_ROW:g}; lower dt_factor or the shear"
         )
     if p.settle_strain > p.strain - FEWEST_ROWS * row * (1 - 1e-9):
         raise UsageError(
-            f"settle_strain={p.settle_strain:g} leaves nothing of strain={p.strain:g} to average: {FEWEST_ROWS} rows of"
-            f" {row:.3g} at least; raise strain or lower it"
+            f"settle_strain={p.settle_strain:g} leaves too little of strain={p.strain:g} to average, which takes at least"
+            f" {FEWEST_ROWS} rows of {row:.3g}; raise strain or lower settle_strain"
         )
 
 
 def check_closing(p):
-    """UsageError for an area fraction that the cell does not come to before its averages begin."""
+    """Raise UsageError if the cell reaches its area fraction only after its averages begin."""
     if not p.area_fraction:
         return
     first = cell(p).area_fraction_at_first
     strain = p.rate * abs(np.log(p.area_fraction / first)) / shear_cell.CLOSING_RATE
     if strain > p.settle_strain:
         raise UsageError(
-            f"the cell comes from its first area fraction, {first:.3g}, to area_fraction={p.area_fraction:g} in a strain of"
-            f" {strain:.3g}, averages begin after settle_strain={p.settle_strain:g}; raise it and strain, or lower shear_rate"
+            f"the cell needs a strain of {strain:.3g} from its first area fraction, {first:.3g}, to"
+            f" area_fraction={p.area_fraction:g}, but averages begin after settle_strain={p.settle_strain:g}; raise settle_strain"
+            " and strain, or lower shear_rate"
         )
 
 
@@ -185,7 +186,7 @@ def check_closing(p):
 
 
 def run(p, folder):
-    """Make the cell, shear it, record stresses; or go on where an interrupted run left off."""
+    """Make the cell, shear it and record stresses; or continue an interrupted run."""
     ratio, march = check(p), YadeMarch()
     if folder.resumed:
         recording.load_stage(folder, march)
@@ -198,7 +199,7 @@ def run(p, folder):
 
 
 def record(p, folder, march):
-    """Run in blocks of a fiftieth of strain; keep block means of the stresses, checkpoints, then means over the steady flow."""
+    """Run in blocks of 0.02 of strain; record block means of the stresses and checkpoints, then means over the steady flow."""
     folder.declare_series(**UNITS)
     track, block = recording.Track(folder), block_of(p)
 
@@ -222,13 +223,11 @@ def record(p, folder, march):
 
 
 def complaint(p, found):
-    """Return in words why the averages are not those of the steady flow that was asked for; "" where they are."""
+    """Return a sentence on why the averages do not describe the steady flow that was asked for; "" if they do."""
     pressure, error = found["mean_pressure"], found["mean_pressure_err"]
     if not p.area_fraction and not abs(pressure - p.pressure) <= max(HELD_WITHIN * p.pressure, 3 * error):
-        return (
-            f"the cell did not come to its pressure: mean_pressure={pressure:.3g} where pressure={p.pressure:g} is held"
-        )
-    return "" if found["steady"] else "tau or phi is not steady by the test to the end of the run"
+        return f"the cell did not reach its pressure: mean_pressure={pressure:.3g} differs from pressure={p.pressure:g}"
+    return "" if found["steady"] else "the test finds tau or phi unsteady up to the end of the run"
 
 
 # Study ----------------------------------------------------------------------------------------------------------------
@@ -240,7 +239,7 @@ def particle_steps(p):
 
 
 def rate(p):
-    """Return the particle-steps per second of one core: `RATES`, interpolated in log I, and the same beyond."""
+    """Return the particle-steps per second of one core: `RATES`, interpolated in log I, constant outside their range."""
     return float(np.interp(np.log(p.inertial_number), np.log(RATES[0]), RATES[1]))
 
 

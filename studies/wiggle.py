@@ -4,20 +4,21 @@ System of Tripura, Kumar, Anyam, Reddy, "The rise and sink dependence on the sha
 A clump of beads along the outline of a shape lies in a settled bed under gravity. Its x is imposed,
 x = A sin(2 pi t/T); it does not turn and is free in y. Units: grain diameter d, density rho, gravity g.
 
-Readings, each a parameter: A is the amplitude of displacement (drive=velocity takes the text's A sin(2 pi t/T) as
-velocity); all shapes weigh what a disk of 7 d and density rho weighs; sizes are outer sizes, beads included.
+The paper leaves some choices open; each of them is a parameter. A is the amplitude of displacement (drive=velocity takes the
+text's A sin(2 pi t/T) as velocity); all shapes have the mass of a disk of diameter 7 d and density rho; sizes are outer sizes,
+beads included.
 
-Cost: the paper's size is 63,000 disks and 1e7 steps, for a disk with A = 3 some 70 minutes of two cores at T = 4 and 100 at
-T = 1 by the rates of its first 3 sqrt(d/g), the bed aside. The demo is 11,500 disks and 1.2e5 steps, a minute or two. A lid
-presses for the bed that the demo leaves out (0.84 rho g d for each d of it); lid_pressure=auto, the default, follows the depth.
-The smoke run has no lid, to be quick.
+Cost: the paper's size is 63,000 disks and 1e7 steps; for a disk with A = 3 this takes some 70 minutes on two cores at T = 4 and
+100 at T = 1, estimated from the rates of its first 3 sqrt(d/g), without the making of the bed. The demo is 11,500 disks and 1.2e5
+steps, a minute or two. Its bed is shallower than the paper's, and the weight of a lid replaces the missing part (0.84 rho g d for
+each d of depth); lid_pressure=auto, the default, follows from depth. The smoke run has no lid, to be quick.
 
-What cheaper settings change stands at the end of help, measured by `scripts/tune wiggle`; what cheaper scenes change, for the
-disk at A = 3 and 5, in studies/RESULTS.md (`wiggle_scene`). In short: depth is pressure, so a shallow scene needs the lid
-(without it the disk sinks at T = 2 where it should rise); under a rigid lid no scene at A = 3 differs from the full one by two
-errors; at A = 5 the demo's scene is too small (at T = 2 the disk sinks in the full one and rises under the lid). Seeds scatter
-by 1.5 times what one run's cycles tell: average over three or more. In the paper V_y is an average on the way to the surface,
-105 d; in 100 sqrt(d/g) a body rises by some 10 d, so ours is that of depth.
+The end of help shows the effect of cheaper settings, measured by `scripts/tune wiggle`; studies/RESULTS.md (`wiggle_scene`) shows
+the effect of cheaper scenes, for the disk at A = 3 and 5. In short: depth acts through the pressure, so a shallow scene needs the
+lid (without it the disk sinks at T = 2, where it should rise). Under a rigid lid no scene at A = 3 differs from the full one by
+two errors. At A = 5 the demo's scene is too small (at T = 2 the disk sinks in the full scene and rises under the lid). The
+scatter between seeds is 1.5 times the error estimated from one run's cycles: average over three seeds or more. In the paper V_y
+is an average over the whole way to the surface, 105 d; in 100 sqrt(d/g) a body rises by some 10 d, so our V_y holds at depth.
 
     scripts/run wiggle_triangle                     the demo
     yade -n -x studies/wiggle.py shape=disk period=4 amplitude=3 out=disk-run
@@ -59,14 +60,14 @@ PHASES = 20  # parts of the cycle
 FIELD_REACH = (15, 5)  # d from the body's centre, and at least from its sides
 PAPERS_DEPTH = 105  # d, of the body's centre
 RATE = 90e6  # particle-steps per second of one core (README)
-# What may help where grains overlap too far: in the run, and while the bed settles.
+# Advice when the overlap guard stops the run: while the body moves, and while the bed settles.
 OVERLAP_KEYS = "lower dt_factor or amplitude, raise period or largest_overlap"
 BED_OVERLAP_KEYS = "lower dt_factor, height or lid_pressure"
 SERIES = quantities.units("series", "t x y vx vy fx fy contacts work", quantities.GRAIN)
 
 
 class WiggleParameters(intruder.BodyParameters):
-    """What the wiggle study knows, in units of d, rho, g."""
+    """The parameters of the wiggle study, in units of d, rho, g."""
 
     unit_system: ClassVar[str] = quantities.GRAIN
 
@@ -77,7 +78,7 @@ class WiggleParameters(intruder.BodyParameters):
         3.0, "d", "A of the displacement; of the velocity [sqrt(g d)] with drive=velocity", ge=0
     )
     period: float = quantity(4.0, "sqrt(d/g)", "T of the oscillation", gt=0)
-    drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "which of the two is A sin(2 pi t/T)")
+    drive: Literal["displacement", "velocity"] = quantity("displacement", "-", "quantity that is A sin(2 pi t/T)")
     mu: float = quantity(0.1, "-", "friction coefficient", ge=0)
     width: float = quantity(300.0, "d", "period of the bed in x", gt=0, lever=Lever(300, "lower"))
     height: float = quantity(195.0, "d", "height of the bed", gt=0, lever=Lever(195, "lower"))
@@ -86,29 +87,36 @@ class WiggleParameters(intruder.BodyParameters):
     )
     time: float = quantity(1000.0, "sqrt(d/g)", "how long it is shaken", gt=0, lever=Lever(1000, "lower"))
     frames: int = quantity(
-        10, "-", "pictures of the bed, evenly in time from the first moment to the last", ge=1, le=9999, watches=True
+        10, "-", "number of pictures of the bed, at equal intervals from start to end", ge=1, le=9999, watches=True
     )
     rest: float = quantity(
         1e-4, "m g d", "kinetic energy per grain at which the bed counts as settled", gt=0, lever=Lever(1e-4, "higher")
     )
     largest_overlap: float = quantity(
-        0.3, "R", "overlap of two grains at which the run is stopped", gt=0, le=1, watches=True
+        0.3, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
     orientation_deg: float = quantity(
-        0.0, "degrees", "the shape turned counter-clockwise about its centroid", ge=-360, le=360
+        0.0, "degrees", "counter-clockwise rotation of the shape about its centroid", ge=-360, le=360
     )
     bead_diameter: float = quantity(0.5, "d", "diameter of the body's beads", gt=0)
     bead_spacing: float = quantity(
-        1.0, "bead diameters", "longest step between beads along the outline", gt=0, le=1, lever=Lever(0.5, "higher")
+        1.0,
+        "bead diameters",
+        "largest distance between beads along the outline",
+        gt=0,
+        le=1,
+        lever=Lever(0.5, "higher"),
     )
-    intruder_mass: float = quantity(np.pi * 7**2 / 4, "rho d^2", "mass of the body: that of a 7 d disk", gt=0)
+    intruder_mass: float = quantity(
+        np.pi * 7**2 / 4, "rho d^2", "mass of the body, by default that of a 7 d disk", gt=0
+    )
     fields: bool = quantity(
-        False, "-", "also average area fraction, velocity and pressure around the body by phase", watches=True
+        False, "-", "also average area fraction, velocity and pressure around the body, by phase", watches=True
     )
     field_samples: int = quantity(
         100,
         "-",
-        "moments of each period that the fields average",
+        "number of moments of each period in the fields' averages",
         ge=PHASES,
         le=10**4,
         watches=True,
@@ -117,7 +125,7 @@ class WiggleParameters(intruder.BodyParameters):
     lid_pressure: Optional[float] = quantity(
         None,
         "rho d g",
-        f"weight over width of a lid; auto: {lid.BED_FRACTION:g} for every d by which depth is below the paper's {PAPERS_DEPTH}",
+        f"weight over width of a lid; auto: {lid.BED_FRACTION:g} for each d that depth is less than the paper's {PAPERS_DEPTH}",
         ge=0,
     )
     lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
@@ -128,7 +136,7 @@ class WiggleParameters(intruder.BodyParameters):
         return lid.weight_of_bed(PAPERS_DEPTH - self.depth) if self.lid_pressure is None else self.lid_pressure
 
     def auto_values(self):
-        """Return what is taken for lid_pressure=auto."""
+        """Return {key: value} for lid_pressure=auto."""
         return {"lid_pressure": self.lid_load}
 
 
@@ -170,7 +178,7 @@ def body_of(p):
 
 
 def bed_recipe(p, body, at, dt, grains):
-    """Return the recipe of the bed around the held body."""
+    """Return the recipe for the bed around the held body."""
     return packing.BedRecipe(
         width=p.width,
         height=p.height,
@@ -188,7 +196,7 @@ def bed_recipe(p, body, at, dt, grains):
 
 
 def make_bed(p, body, at, dt, grains):
-    """Return the settled bed around the held body, from the cache or by pouring it."""
+    """Return the settled bed around the held body, from the cache or newly poured."""
     with recording.overlap_advice(BED_OVERLAP_KEYS):
         return packing.settled_bed(bed_recipe(p, body, at, dt, grains))
 
@@ -216,11 +224,11 @@ def imposed_motion(p, held):
 
 
 def check_period(p, dt):
-    """A sample of the motion is at least one time step and at most the run."""
+    """Raise UsageError if a sample of the motion is shorter than a time step or longer than the run."""
     if p.period > SAMPLES_PER_PERIOD * p.time:
         raise UsageError(
-            f"period={p.period:g} sqrt(d/g) must be at most {SAMPLES_PER_PERIOD} times time={p.time:g}, or nothing of it is seen;"
-            " raise time or lower period"
+            f"period={p.period:g} sqrt(d/g) must be at most {SAMPLES_PER_PERIOD} times time={p.time:g}, or the run shows too"
+            " little of the motion; raise time or lower period"
         )
     if p.period < SAMPLES_PER_PERIOD * dt:
         raise UsageError(
@@ -233,7 +241,7 @@ def check_period(p, dt):
 
 
 def measures(p, held, dt):
-    """Return the binner of the forces on the body and, if asked for, the averager of fields, which sleeps until V_y counts."""
+    """Return the binner of the forces on the body and, if asked for, the averager of fields, off until the averages begin."""
     binner = engines.ContactForceBinner(body=held, label="binner")
     return [binner, field_averager(p, held, dt)] if p.fields else [binner]
 
@@ -255,7 +263,7 @@ def motion(state, drive):
 
 
 def keep_rates(p, folder, t, y):
-    """Store V_y by the paper's rule, from a tenth of the run to arrest, with its error, and V_y by phase."""
+    """Store V_y by the paper's rule, from a tenth of the run until the body stops, with its error, and V_y by phase."""
     rise = drift(t, y, p.period, skip=SKIPPED)
     amplitude_unit = "d" if p.drive == "displacement" else "sqrt(g d)"
     folder.summarize(shape=p.shape, amplitude=(p.amplitude, amplitude_unit), period=p.period)
@@ -268,7 +276,7 @@ def keep_rates(p, folder, t, y):
 
 
 def check(p):
-    """Refuse values that no run can be made of; return the body and the time step over the critical one."""
+    """Refuse values that allow no run; return the body and the ratio of the time step to the critical one."""
     body, dt, grains = body_of(p), time_step(p), material(p)
     lightest = (
         min(p.intruder_mass, p.lid_load or np.inf) if p.lid == "rigid" else p.intruder_mass
@@ -283,12 +291,12 @@ def check(p):
 
 
 def centre(p):
-    """Return where the body begins, (2,) [d]."""
+    """Return the initial position of the body, (2,) [d]."""
     return np.array([p.width / 2, p.height - p.depth])
 
 
 def run(p, folder):
-    """Make the bed, shake the body, record its way; or go on where an interrupted run left off."""
+    """Make the bed, shake the body and record its path; or continue an interrupted run."""
     (body, ratio), dt, grains, march = check(p), time_step(p), material(p), YadeMarch()
     print(lid.pressures_in_words(p.depth, PAPERS_DEPTH, p.lid_load, p.lid_pressure is None), file=sys.stderr)
     if folder.resumed:
@@ -305,7 +313,7 @@ def run(p, folder):
 
 
 def record(p, folder, march, stage):
-    """Run in blocks, a fortieth of a period each; keep series, frames, checkpoints, then rise rates and fields."""
+    """Run in blocks of a fortieth of a period; record series, frames and checkpoints, then rise rates and fields."""
     from yade import O
 
     folder.declare_series(**SERIES)
@@ -342,7 +350,7 @@ def record(p, folder, march, stage):
 
 
 def particle_steps(p):
-    """Return grains times steps of a run, by the area fraction of a settled bed."""
+    """Return grains times steps of a run, with the number of grains estimated from the area fraction of a settled bed."""
     return lid.BED_FRACTION / (np.pi / 4) * p.width * p.height * p.time / time_step(p)
 
 
@@ -362,7 +370,7 @@ STUDY = Study(
     constants={
         "time_step": Constant(TIME_STEP, "sqrt(d/g)", "at dt_factor=1"),
         "papers_depth": Constant(PAPERS_DEPTH, "d", "of the body's centre in the paper"),
-        "bed_fraction": Constant(lid.BED_FRACTION, "-", "area fraction of a settled bed, which a lid stands for"),
+        "bed_fraction": Constant(lid.BED_FRACTION, "-", "area fraction of a settled bed, which a lid replaces"),
     },
 )
 

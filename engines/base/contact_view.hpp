@@ -22,7 +22,7 @@ struct Wrench {
 	Vector3r torque = Vector3r::Zero();  ///< [N m]
 };
 
-/// Whatever can tell the contacts at the present positions: YADE's interactions, or GrainLoop.
+/// A source of the contacts at the present positions: YADE's interactions, or GrainLoop.
 class ContactSource {
 public:
 	virtual ~ContactSource() = default;

@@ -32,11 +32,11 @@ struct SceneView {
 	bool sheared = false;                 ///< images one period further in y are displaced along x, or move
 };
 
-/// Whatever can tell them: YADE's bodies and interactions, or GrainLoop.
+/// A source of grains and contacts: YADE's bodies and interactions, or GrainLoop.
 class GrainSource {
 public:
 	virtual ~GrainSource() = default;
-	/// Fills `view` anew; contacts only where asked for, since they cost time.
+	/// Fills `view`; contacts only if asked for, since they cost time.
 	virtual void look(SceneView& view, bool with_contacts) = 0;
 };
 

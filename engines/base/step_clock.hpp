@@ -8,7 +8,7 @@ namespace graindrive {
 ///
 /// O.time sums dt and is off by ~1e-12 of itself after ten million steps; this product is exact to round-off. The anchor moves
 /// when dt changes, and when the step count jumps: back by O.resetTime, or on over steps without a reading, which do not count.
-/// Time then goes on from the end of the last step.
+/// Time then continues from the end of the last step.
 struct StepClock {
 	long anchor_step = -1;  ///< step of the anchor; -1 before the first reading
 	Real anchor_time = 0;   ///< time at the anchor [s]

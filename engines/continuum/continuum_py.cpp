@@ -98,7 +98,7 @@ boost::shared_ptr<TwoPhaseFlow> flow_of(const py::object& fraction, const py::ob
 
 py::object construct(const py::tuple& arguments, const py::dict& keywords)
 {
-	if (py::len(arguments) != 3) throw std::invalid_argument("a flow is made as TwoPhaseFlow(fraction, solid, cells_x=…, …)");
+	if (py::len(arguments) != 3) throw std::invalid_argument("make a flow as TwoPhaseFlow(fraction, solid, cells_x=…, …)");
 	const py::object self(arguments[0]), fraction(arguments[1]), solid(arguments[2]);
 	return self.attr("__init__")(fraction, solid, keywords);
 }
@@ -168,7 +168,7 @@ py::dict part_times(const TwoPhaseFlow& flow)
 /// Without the interpreter's lock, so that other threads of Python go on.
 void advance(TwoPhaseFlow& flow, long steps)
 {
-	if (steps < 0) throw std::invalid_argument("a flow goes on by 0 steps or more, got " + std::to_string(steps));
+	if (steps < 0) throw std::invalid_argument("a flow must advance by 0 steps or more, got " + std::to_string(steps));
 	struct Unlocked {
 		PyThreadState* kept = PyEval_SaveThread();
 		~Unlocked() { PyEval_RestoreThread(kept); }
@@ -188,49 +188,47 @@ py::object attribute(Get&& get)
 void bind_continuum()
 {
 	py::class_<TwoPhaseFlow, boost::shared_ptr<TwoPhaseFlow>, boost::noncopyable>("TwoPhaseFlow",
-		"Grains and gas as two incompressible fluids in a moving vessel, in the plane; graindrive.continuum.continuum makes "
-		"them.\n\n"
-		"TwoPhaseFlow(fraction, solid, cells_x=…, cells_y=…, spacing=…, …): `fraction` [-] of the dense fluid in the cells, "
-		"shape\n"
-		"(cells_y, cells_x); `solid`, a Surface whose section at z = 0 is the vessel, or None; keywords as flow_words() lists "
-		"them.\n"
-		"Equations: Oba, Otsuki (2025), section II.3. Raises ValueError for what cannot be, with the rule and the value.",
+		"Grains and gas as two incompressible fluids in a moving vessel, in two dimensions; graindrive.continuum.continuum\n"
+		"runs them.\n\n"
+		"TwoPhaseFlow(fraction, solid, cells_x=…, cells_y=…, spacing=…, …): `fraction` [-] of the dense fluid in the cells,\n"
+		"shape (cells_y, cells_x); `solid`, a Surface whose section at z = 0 is the vessel, or None; flow_words() lists the\n"
+		"keywords. Equations: Oba, Otsuki (2025), section II.3. Raises ValueError with the rule and the value for bad input.",
 		py::no_init)
 		.def("__init__", py::raw_function(&construct, 1))
 		.def("__init__", py::make_constructor(&flow_of))
 		.def("advance", &advance, (py::arg("steps")),
-			"Go on by so many steps. Raises RuntimeError where the flow gets too fast for the step, or a solver fails.")
+			"Advance by `steps` steps. Raises RuntimeError if the flow is too fast for the time step, or a solver fails.")
 		.add_property("time", attribute([](TwoPhaseFlow& f) { return f.state().time; }))
 		.add_property("steps", attribute([](TwoPhaseFlow& f) { return f.state().steps; }))
 		.add_property("time_step", attribute([](TwoPhaseFlow& f) { return f.settings().time_step; }),
-			&TwoPhaseFlow::set_time_step, "dt; assigned, it holds from the next step on")
+			&TwoPhaseFlow::set_time_step, "time step dt; an assigned value applies from the next step on")
 		.add_property(
 			"stable_step", &TwoPhaseFlow::stable_step, "the largest dt that explicit viscosity allows; inf with viscosity='full'")
 		.add_property("fraction", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.state().fraction); }),
 			"alpha [-], (cells_y, cells_x)")
 		.add_property(
-			"pressure", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.state().pressure); }), "p, 0 in the gas on average")
+			"pressure", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.state().pressure); }), "p; its mean in the gas is 0")
 		.add_property("potential", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.state().potential); }), "S of SMAC")
-		.add_property("velocity", &velocity, "mean of the faces of each cell, (cells_y, cells_x, 2)")
+		.add_property("velocity", &velocity, "mean over the faces of each cell, (cells_y, cells_x, 2)")
 		.add_property("face_velocity_x",
 			attribute([](TwoPhaseFlow& f) { return window(f.grid(), f.state().velocity.x, f.grid().nx + 1, f.grid().ny); }),
-			"on the faces across x, (cells_y, cells_x + 1)")
+			"velocity on the faces normal to x, (cells_y, cells_x + 1)")
 		.add_property("face_velocity_y",
 			attribute([](TwoPhaseFlow& f) { return window(f.grid(), f.state().velocity.y, f.grid().nx, f.grid().ny + 1); }),
-			"on the faces across y, (cells_y + 1, cells_x)")
+			"velocity on the faces normal to y, (cells_y + 1, cells_x)")
 		.add_property("shear_rate", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.present_shear_rate()); }), "(G:G/2)^1/2")
 		.add_property(
 			"shear_viscosity", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.present_viscosity()); }), "of the mixture")
 		.add_property("ill_posed", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.ill_posed()); }),
-			"1 where the dense fluid's equations are ill-posed, else 0")
+			"1 in cells where the dense fluid's equations are ill-posed, else 0")
 		.add_property("openness", attribute([](TwoPhaseFlow& f) { return in_cells(f, f.domain().cell_open); }),
 			"chi: 1 in the fluid, 0 in the solid")
-		.add_property("area", &TwoPhaseFlow::area, "of the dense fluid in the cells that are wholly open: nothing changes it")
-		.add_property("part_times", &part_times, "wall time [s] of the parts of all steps so far")
-		.add_property("report", &report, "what the last step took")
-		.def("state", &state, "All that decides how the flow goes on: {name: array or number}.")
+		.add_property("area", &TwoPhaseFlow::area, "of the dense fluid in the cells that are wholly open; it is conserved")
+		.add_property("part_times", &part_times, "wall time [s] of each part of the step, summed over all steps")
+		.add_property("report", &report, "iterations and residuals of the last step")
+		.def("state", &state, "The complete state of the flow: {name: array or number}.")
 		.def("restore", &restore, (py::arg("state")),
-			"Go on from what `state` returned, with the same bits. Raises ValueError if it does not fit.");
+			"Continue from what `state` returned, with the same bits. Raises ValueError if it does not fit.");
 	py::def("flow_words", &flow_words, "[(name, default, meaning)] of the keywords of TwoPhaseFlow.");
 	py::def(
 		"pressure_solvers",
@@ -247,7 +245,7 @@ void bind_continuum()
 			return py::make_tuple(range.low, range.high);
 		},
 		(py::arg("static_friction"), py::arg("dynamic_friction"), py::arg("inertial_scale")),
-		"The inertial numbers between which mu(I) is well-posed, by the criterion of Barker et al. (2015); low > high for none.");
+		"Range of inertial numbers in which mu(I) is well-posed (Barker et al. 2015); low > high if there is none.");
 }
 
 }  // namespace graindrive

@@ -1,4 +1,4 @@
-/// Words into choices; what is not known is refused with the list of what is.
+/// Turns words into choices; an unknown word is refused with the list of the known ones.
 #include "engines/continuum/flow_words.hpp"
 
 #include <cmath>

@@ -34,7 +34,7 @@ private:
 class FullViscosity {
 public:
 	FullViscosity(const Grid& grid, const Domain& domain, Edge edge);
-	/// `velocity` in: first guess, and what is fixed; out: solution. @throws std::runtime_error if the tolerance is not reached
+	/// `velocity` in: first guess, and fixed values; out: solution. @throws std::runtime_error if the tolerance is not reached
 	MomentumReport solve(
 		const FaceValues& inertia, const Viscosities& viscosity, const FaceValues& given, FaceValues& velocity, double tolerance);
 

@@ -43,7 +43,7 @@ inline void scale_and_add(double factor, const FaceValues& what, FaceValues& to)
 
 struct GradientReport {
 	int iterations = 0;
-	double residual = 0;  ///< what is left over `scale` [-]
+	double residual = 0;  ///< residual over `scale` [-]
 };
 
 /// Lessens `rest` = given - A x, and moves x, until (rest, M rest)^1/2 <= tolerance scale, where z = M r is what `precondition(r, z)`

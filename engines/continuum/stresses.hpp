@@ -45,7 +45,8 @@ void shear_rate_at_nodes(const Grid& grid, const Rates& rates, Values& rate);
 /// div(eta G) on faces. `viscosities.cells` must have ghosts; `stresses` is scratch.
 void viscous_force(const Grid& grid, const Rates& rates, const Viscosities& viscosities, Rates& stresses, FaceValues& force);
 
-/// -div(v v) on faces, by means of neighbouring faces: conserves momentum, and energy but for the time step. `velocity` must have ghosts.
+/// -div(v v) on faces, by means of neighbouring faces: conserves momentum, and energy except for the error of
+/// the time step. `velocity` must have ghosts.
 void advection(const Grid& grid, const FaceValues& velocity, FaceValues& result);
 
 }  // namespace graindrive::continuum

@@ -43,7 +43,7 @@ Values painted(const Grid& grid, const std::function<double(double, double)>& fr
 	return result;
 }
 
-/// 2 g - g_before: what a quantity that changes steadily will be.
+/// 2 g - g_before: the extrapolation of a quantity to the next step.
 void extrapolate(Values& present, Values& before)
 {
 	for (std::size_t k = 0; k < present.size(); ++k) {

@@ -36,7 +36,7 @@ struct FlowSettings {
 	std::string pressure_solver;  ///< "" for the default
 };
 
-/// All that decides how a flow goes on.
+/// The complete state of a flow.
 struct FlowState {
 	double time = 0;
 	long steps = 0;
@@ -70,7 +70,7 @@ struct StepReport {
 	double divergence = 0;  ///< largest |div v| [1/time]
 };
 
-/// Wall time [s] that the parts of all steps so far took: what one looks at to make the solver faster.
+/// Wall time [s] of each part of the step, summed over all steps so far, for profiling.
 struct PartTimes {
 	double material = 0;   ///< rates, viscosity, density, coefficients and preconditioner of the pressure
 	double forces = 0;     ///< advection and viscous forces
@@ -87,13 +87,13 @@ public:
 	TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids& fluids, const FlowSettings& settings,
 		const std::function<double(double x, double y)>& fraction, const WallLayer& wall_layer = {});
 
-	/// @throws std::runtime_error where a flow leaves what the scheme can follow, saying why and what to do
+	/// @throws std::runtime_error with the reason and the way out if the scheme cannot follow the flow
 	void step();
 	void advance(long steps);
 
 	/// The largest time step that the explicit part of the viscosity allows; infinite with `Viscosity::full`.
 	double stable_step() const;
-	/// Heard from the next step on. @throws std::invalid_argument as the constructor
+	/// Applies from the next step on. @throws std::invalid_argument as the constructor
 	void set_time_step(double dt);
 
 	const Grid& grid() const { return g; }

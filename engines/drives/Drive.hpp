@@ -28,15 +28,15 @@ public:
 	static void common_attributes(Visit&& visit)
 	{
 		visit("work", &Drive::work, "work done on the grains so far, through the driven degrees of freedom [J]");
-		visit("force", &Drive::force, "force of the grains on what is driven, at the last step [N]");
+		visit("force", &Drive::force, "force of the grains on the driven bodies, at the last step [N]");
 		visit("torque", &Drive::torque,
 			"torque of the grains about the body's centre (a drum's axisPoint), at the last step [N m]");
 		visit("elapsed", &Drive::elapsed,
 			"time over which the drive has acted, at the start of the last step [s]; steps in which it was dead do not count");
-		visit("leg", &Drive::leg, "settings that the present leg of the motion began with, as numbers");
-		visit("legTime", &Drive::legTime, "`elapsed` at which it began [s]");
-		visit("anchorStep", &Drive::anchorStep, "step that the drive's time is counted from; -1 before the first step");
-		visit("anchorTime", &Drive::anchorTime, "time since the drive began at that step [s]");
+		visit("leg", &Drive::leg, "settings at the start of the present leg of the motion, as numbers");
+		visit("legTime", &Drive::legTime, "`elapsed` at the start of the leg [s]");
+		visit("anchorStep", &Drive::anchorStep, "step from which the drive's time is counted; -1 before the first step");
+		visit("anchorTime", &Drive::anchorTime, "time that the drive had acted at that step [s]");
 		visit("anchorDt", &Drive::anchorDt, "time step since then [s]");
 		visit("lastStep", &Drive::lastStep, "last step that the drive acted in");
 	}
@@ -102,14 +102,14 @@ protected:
 	}
 
 private:
-	/// Origin and time belong to one scene: in the next one, after O.reset, the drive begins anew.
+	/// Origin and time belong to one scene: in the next one, after O.reset, the drive starts again.
 	void settle_in()
 	{
 		const auto same = [](const auto& a, const auto& b) { return !a.owner_before(b) && !b.owner_before(a); };
 		const boost::weak_ptr<yade::Factorable> here = this->scene->weak_from_this(), nowhere;
 		if (same(here, home_)) return;
 		if (!home_.expired())
-			throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make one for every scene");
+			throw std::runtime_error(std::string(Self::class_name) + " began in another scene; make a new drive for every scene");
 		if (!same(home_, nowhere)) anchorStep = lastStep = -1, anchorTime = work = 0, leg.clear();
 		home_ = here;
 		require_place();
@@ -140,7 +140,7 @@ public:
 	static void common_attributes(Visit&& visit)
 	{
 		visit("body", &BodyDrive::body, "id of the driven body or clump");
-		visit("taken", &BodyDrive::taken, "its degrees of freedom that were free before the drive blocked them, as bits");
+		visit("taken", &BodyDrive::taken, "degrees of freedom that the drive blocked and that were free before, as bits");
 		Drive<Self>::common_attributes(visit);
 	}
 

@@ -5,11 +5,10 @@ namespace graindrive {
 
 const char* const DrumDrive::documentation =
 	"Turns a set of bodies rigidly about an axis through `axisPoint` (the drum of Oba, Otsuki 2025).\n\n"
-	"X_i(t) = axisPoint + R(Omega t) (X_i(0) - axisPoint), spin Omega. Each body gets the velocity of the chord that takes it\n"
-	"there, so that radii and angles keep the closed form to round-off. Where axisPoint or angularVelocity are assigned in "
-	"mid-run,\n"
-	"and after a rest (dead=True), it goes on from the present places. Place it after the contacts and before the integrator.\n"
-	"Raises ValueError for non-finite values.";
+	"X_i(t) = axisPoint + R(Omega t) (X_i(0) - axisPoint), spin Omega. Each body gets the velocity of the chord to its\n"
+	"next position, so that radii and angles follow the closed form to round-off. If axisPoint or angularVelocity are\n"
+	"assigned during a run, and after a pause (dead=True), the motion continues from the present positions. Place it after\n"
+	"the contacts and before the integrator. Raises ValueError for non-finite values.";
 
 namespace {
 
@@ -59,7 +58,7 @@ void DrumDrive::begin_leg()
 	Drive::begin_leg(settings());
 }
 
-/// Sends one body along its chord; answers the grains' force on it, with the torque about the axis point.
+/// Moves one body along its chord; returns the grains' force on it, with the torque about the axis point.
 Wrench DrumDrive::move(std::size_t index, const Turn& turn)
 {
 	yade::State& state = state_of(bodies[index]);

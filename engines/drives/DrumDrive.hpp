@@ -15,7 +15,7 @@ public:
 		visit("bodies", &DrumDrive::bodies, "ids of the bodies that turn");
 		visit("axisPoint", &DrumDrive::axisPoint, "a point on the axis [m]");
 		visit("angularVelocity", &DrumDrive::angularVelocity, "Omega along the axis [rad/s]");
-		visit("origins", &DrumDrive::origins, "positions where the present leg began, from axisPoint [m]");
+		visit("origins", &DrumDrive::origins, "positions at the start of the present leg, relative to axisPoint [m]");
 		common_attributes(visit);
 	}
 	void check() const;

@@ -4,16 +4,15 @@
 namespace graindrive {
 
 const char* const OscillationDrive::documentation =
-	"Oscillates a body or clump along x, y or z; its other degrees of freedom stay as they are.\n\n"
+	"Oscillates a body or clump along x, y or z; its other degrees of freedom are not changed.\n\n"
 	"form='displacement': x(t) = x0 + A [sin(2 pi t/T + phi) - sin phi]\n"
 	"form='velocity':     v(t) = A sin(2 pi t/T + phi), x its integral\n\n"
-	"Both are readings of Tripura et al., whose text writes the velocity and uses the displacement. t starts at the drive's\n"
-	"first step. Where amplitude, period, form, direction or body are assigned in mid-run, the motion goes on from the present\n"
-	"place with the present angle 2 pi t/T + phi, or with the `phase` that is assigned: then x0, t and phi are those of that "
-	"step.\n"
-	"It also goes on from the present place after a rest (dead=True). Place it after the contacts and before the integrator. "
-	"Raises ValueError for a period <= 0, a negative or\n"
-	"non-finite amplitude, an unknown form, or a direction that is not an axis.";
+	"Both are possible readings of Tripura et al., whose text gives the velocity but uses the displacement. t starts at\n"
+	"the drive's first step. If amplitude, period, form, direction or body are assigned during a run, the motion continues\n"
+	"from the present position with the present angle 2 pi t/T + phi, or with the `phase` that is assigned; x0, t and phi\n"
+	"then begin at that step. After a pause (dead=True) it also continues from the present position. Place it after the\n"
+	"contacts and before the integrator. Raises ValueError for a period <= 0, a negative or non-finite amplitude, an\n"
+	"unknown form, or a direction that is not an axis.";
 
 void OscillationDrive::check() const
 {

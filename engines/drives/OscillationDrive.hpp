@@ -14,11 +14,11 @@ public:
 	{
 		visit("amplitude", &OscillationDrive::amplitude, "A: of displacement [m], or of velocity [m/s] with form='velocity'");
 		visit("period", &OscillationDrive::period, "T [s]");
-		visit("phase", &OscillationDrive::phase, "phi at the start [rad]; assigned later, the phase from then on");
+		visit("phase", &OscillationDrive::phase, "phi at the start [rad]; if assigned during a run, the phase from then on");
 		visit("direction", &OscillationDrive::direction, "axis of the motion: along x, y or z");
-		visit("form", &OscillationDrive::form, "'displacement' or 'velocity': which of the two is A sin(2 pi t/T + phi)");
-		visit("origin", &OscillationDrive::origin, "coordinate where the present leg began [m]; taken from the body");
-		visit("legPhase", &OscillationDrive::legPhase, "phase where it began [rad]");
+		visit("form", &OscillationDrive::form, "'displacement' or 'velocity': the quantity that is A sin(2 pi t/T + phi)");
+		visit("origin", &OscillationDrive::origin, "coordinate at the start of the present leg [m]; taken from the body");
+		visit("legPhase", &OscillationDrive::legPhase, "phase at the start of the present leg [rad]");
 		visit("phaseAssigned", &OscillationDrive::phaseAssigned, "true if `phase` was assigned since the last step");
 		common_attributes(visit);
 	}

@@ -7,18 +7,14 @@
 namespace graindrive {
 
 const char* const ShearDrive::documentation =
-	"Shears the disks of a periodic cell homogeneously along x, with v_x = shearRate y (Lees, Edwards 1972), at constant height "
-	"or "
-	"under a\n"
-	"constant pressure P: dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 of the last measure (da Cruz et al., PRE 72, 021309 "
-	"(2005)).\n\n"
-	"It sets O.cell.velGrad = ((shearRate, 0 .. dL/dt/L)), which YADE's own loop and GrainLoop follow, and O.cell.homoDeform = "
-	"1, "
-	"with which\n"
-	"bodies follow a change of velGrad at once and obey Newton's law otherwise. Stresses are > 0 in compression and those of "
-	"the\n"
-	"present positions, before the step; velocities count against the mean flow. Place it after the contacts and before the\n"
-	"integrator. Raises ValueError for a scene that is not periodic and numbers out of range.";
+	"Shears the disks of a periodic cell homogeneously along x, with v_x = shearRate y (Lees, Edwards 1972), at constant\n"
+	"height or under a constant pressure P: dL/dt = (p - P) L/g_p with p = (s_xx + s_yy)/2 of the last measurement (da\n"
+	"Cruz et al., PRE 72, 021309 (2005)).\n\n"
+	"It sets O.cell.velGrad = ((shearRate, 0 .. dL/dt/L)), which YADE's own loop and GrainLoop follow, and\n"
+	"O.cell.homoDeform = 1: then bodies follow a change of velGrad at once and otherwise obey Newton's law. Stresses are >\n"
+	"0 in compression and belong to the present positions, before the step; velocities are relative to the mean flow.\n"
+	"Place it after the contacts and before the integrator. Raises ValueError for a scene that is not periodic and for\n"
+	"numbers out of range.";
 
 namespace {
 

@@ -15,21 +15,21 @@ public:
 	{
 		using Self = ShearDrive;
 		visit("shearRate", &Self::shearRate, "dv_x/dy of the mean flow [1/s]");
-		visit("pressure", &Self::pressure, "P to which the cell's height answers [N/m]; 0: it does not");
+		visit("pressure", &Self::pressure, "P that the cell's height adapts to [N/m]; 0: constant height");
 		visit("pressureDamping", &Self::pressureDamping, "g_p in dL/dt = (p - P) L/g_p [N s/m]");
-		visit("height", &Self::height, "height that the cell goes to and keeps [m]; 0: the one that it has");
-		visit("heightRate", &Self::heightRate, "how fast it goes there at most, |dL/dt|/L [1/s]");
-		visit("every", &Self::every, "measure, and correct the height, every so many steps");
-		visit("bins", &Self::bins, "parts of the height in which velocities are averaged");
+		visit("height", &Self::height, "height that the cell approaches and keeps [m]; 0: its present height");
+		visit("heightRate", &Self::heightRate, "largest rate of this change of height, |dL/dt|/L [1/s]");
+		visit("every", &Self::every, "number of steps between two measurements, which also correct the height");
+		visit("bins", &Self::bins, "number of parts of the height in which velocities are averaged");
 		visit("growth", &Self::growth, "dL/dt / L of the last step [1/s]");
-		visit("lastPressure", &Self::lastPressure, "p = (s_xx + s_yy)/2 at the last measure, contacts and motion [N/m]");
-		visit("lastShearStress", &Self::lastShearStress, "tau = -s_xy then [N/m]");
-		visit("samples", &Self::samples, "measures since clear()");
+		visit("lastPressure", &Self::lastPressure, "p = (s_xx + s_yy)/2 at the last measurement, contacts and motion [N/m]");
+		visit("lastShearStress", &Self::lastShearStress, "tau = -s_xy at the last measurement [N/m]");
+		visit("samples", &Self::samples, "number of measurements since clear()");
 		visit("sums", &Self::sums,
-			"sums over them: contact stress xx, xy, yx, yy, kinetic stress xx, xy, yx, yy [N/m], contacts of a grain [-], area "
+			"sums of samples: contact stress xx, xy, yx, yy, kinetic stress xx, xy, yx, yy [N/m], contacts of a grain [-], area "
 			"fraction [-], growth [1/s], p and tau [N/m], p^2 and tau^2 [N^2/m^2]");
-		visit("profileSums", &Self::profileSums, "by part of the height: sum of v_x against the mean flow [m/s]");
-		visit("profileCounts", &Self::profileCounts, "and of grains");
+		visit("profileSums", &Self::profileSums, "for each part of the height: sum of v_x relative to the mean flow [m/s]");
+		visit("profileCounts", &Self::profileCounts, "for each part of the height: number of grains in the sum");
 	}
 	void check() const;
 	void action() override;

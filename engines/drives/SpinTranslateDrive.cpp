@@ -5,11 +5,10 @@ namespace graindrive {
 
 const char* const SpinTranslateDrive::documentation =
 	"Moves a body or clump with constant velocity and spin (the Magnus study's intruder: Kumar, Dhiman, Reddy 2019).\n\n"
-	"X(t) = X0 + V t and, if all rotations are driven, orientation = rotation(omega t) * orientation(0). `dofs` names what is\n"
-	"driven ('xyzXYZ'); the rest stays free. Where a setting is assigned in mid-run, and after a rest (dead=True), the motion\n"
-	"goes on from the present place: X0 and t then are those of that step. Place it after the contacts and before the "
-	"integrator. Raises ValueError for\n"
-	"non-finite values and unknown letters.";
+	"X(t) = X0 + V t and, if all rotations are driven, orientation = rotation(omega t) * orientation(0). `dofs` names the\n"
+	"driven degrees of freedom ('xyzXYZ'); the others stay free. If a setting is assigned during a run, and after a pause\n"
+	"(dead=True), the motion continues from the present position; X0 and t then begin at that step. Place it after the\n"
+	"contacts and before the integrator. Raises ValueError for non-finite values and unknown letters.";
 
 void SpinTranslateDrive::check() const
 {

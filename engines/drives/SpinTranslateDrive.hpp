@@ -16,8 +16,8 @@ public:
 		visit("spin", &SpinTranslateDrive::spin, "omega [rad/s]");
 		visit("dofs", &SpinTranslateDrive::dofs,
 			"driven degrees of freedom: letters of 'xyzXYZ' (capitals are rotations); the others stay free");
-		visit("origin", &SpinTranslateDrive::origin, "position where the present leg began [m]; taken from the body");
-		visit("originOrientation", &SpinTranslateDrive::originOrientation, "orientation where it began; taken from the body");
+		visit("origin", &SpinTranslateDrive::origin, "position at the start of the present leg [m]; taken from the body");
+		visit("originOrientation", &SpinTranslateDrive::originOrientation, "orientation at that start; taken from the body");
 		common_attributes(visit);
 	}
 	void check() const;

@@ -12,7 +12,7 @@ void bind_drives()
 	seam::bind<OscillationDrive>(OscillationDrive::documentation);
 	seam::bind<SpinTranslateDrive>(SpinTranslateDrive::documentation);
 	seam::bind<DrumDrive>(DrumDrive::documentation);
-	seam::bind<ShearDrive>(ShearDrive::documentation).def("clear", &ShearDrive::clear, "Begin the sums anew.");
+	seam::bind<ShearDrive>(ShearDrive::documentation).def("clear", &ShearDrive::clear, "Reset the sums to zero.");
 }
 
 }  // namespace graindrive

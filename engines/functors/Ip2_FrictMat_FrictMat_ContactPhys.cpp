@@ -8,13 +8,10 @@ namespace graindrive {
 
 const char* const Ip2_FrictMat_FrictMat_ContactPhys::documentation =
 	"Makes the ContactPhys of a new contact: reduced radius and mass of the pair, friction coefficient.\n\n"
-	"A clump's member counts with the mass of its clump. A body at rest with every degree of freedom blocked (walls, bases) "
-	"counts\n"
-	"as infinitely heavy, so that the pair's reduced mass is the partner's, as LAMMPS takes it for frozen atoms. So does a "
-	"Solid\n"
-	"whose three translations are blocked, whether it moves or not, and one without a mass. The reduced radius of a sphere and "
-	"a\n"
-	"Solid is the sphere's own.";
+	"A member of a clump has the mass of its clump. A body at rest with all degrees of freedom blocked (walls, bases)\n"
+	"counts as infinitely heavy, so the pair's reduced mass is the mass of its partner, as in LAMMPS for frozen atoms. The\n"
+	"same holds for a Solid whose three translations are blocked, whether it moves or not, and for a Solid without a mass.\n"
+	"The reduced radius of a sphere and a Solid is the radius of the sphere.";
 
 /// A driven solid has no mass that could recoil, however it moves.
 static bool is_held(const yade::Body& body)

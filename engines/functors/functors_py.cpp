@@ -1,4 +1,4 @@
-/// Python bindings of the functors and of what a contact carries.
+/// Python bindings of the functors and of the data of a contact.
 #include "engines/functors/Ip2_FrictMat_FrictMat_ContactPhys.hpp"
 #include "engines/functors/contact_law_functors.hpp"
 #include "engines/functors/present_contacts.hpp"
@@ -50,12 +50,10 @@ void bind_functors()
 	});
 	bind_laws();
 	py::def("present_contacts", present_contacts_table, (py::arg("scene"), py::arg("law"), py::arg("contact_maker")),
-		"Contacts of the disks, spheres and Solids of a scene (O._sceneObj) at the present positions, those that YADE's next "
-		"step will\n"
-		"find, by one of our Law2_ functors and our Ip2_: arrays as of `contact_table`, without point, with slip [m] along z x "
-		"n,\n"
-		"which tells all of it for disks, and slip_vector [m], shape (n, 3), of i against j, for spheres.\n"
-		"Nothing changes. Pairs of frozen bodies and of members of one clump are left out. Raises TypeError for another law.");
+		"Contacts of the disks, spheres and Solids of a scene (O._sceneObj) at the present positions, as YADE's next step will\n"
+		"find them with one of our Law2_ functors and our Ip2_. Arrays as in `contact_table`, without point; slip [m] along\n"
+		"z x n, which is complete for disks, and slip_vector [m], shape (n, 3), of i against j, for spheres. The scene is not\n"
+		"changed. Pairs of frozen bodies and of members of one clump are left out. Raises TypeError for other laws.");
 }
 
 }  // namespace graindrive

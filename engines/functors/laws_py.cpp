@@ -53,15 +53,15 @@ py::dict terms_of_law(const std::string& name, const py::dict& given, Real overl
 void bind_laws()
 {
 	py::def("contact_laws", contact_laws,
-		"Every contact law: name -> what it is given of the grains' material, name -> (symbol, unit, rule). Names are those of\n"
-		"GrainLoop.law and of GrainLoop's attributes.");
+		"Every contact law: name -> its material constants, {name: (symbol, unit, rule)}. Names are those of GrainLoop.law and\n"
+		"of GrainLoop's attributes.");
 	py::def("law_functors", law_functors, "Our Law2_ functors: class -> name of the law.");
 	py::def("terms_of_law", terms_of_law,
 		(py::arg("law"), py::arg("given"), py::arg("overlap"), py::arg("effective_radius"), py::arg("effective_mass")),
 		"The terms of a law at an overlap [m], for a reduced radius [m] and mass [kg]: elastic part of the normal force [N], "
 		"its\n"
 		"energy [J], stiffness [N/m], dashpot [N s/m], tangential_stiffness [N/m] and tangential_dashpot [N s/m]. `given` holds\n"
-		"what `contact_laws` lists. Raises ValueError for an unknown law or a number out of range.");
+		"the constants that `contact_laws` lists. Raises ValueError for an unknown law or a number out of range.");
 	py::def("critical_step", laws::critical_step, (py::arg("stiffness"), py::arg("dashpot"), py::arg("mass")),
 		"Leapfrog's stability limit [s] of a damped oscillator: stiffness [N/m], dashpot [N s/m], mass [kg].");
 }

@@ -1,4 +1,4 @@
-/// Solids are told by the class index of their shape, as YADE's dispatchers tell them.
+/// Solids are recognised by the class index of their shape, as in YADE's dispatchers.
 #include "engines/functors/pair_geometry.hpp"
 
 #include "engines/solids/Solid.hpp"

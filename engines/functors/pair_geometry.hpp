@@ -1,4 +1,4 @@
-/// What a contact of YADE's is to our laws: two disks or spheres, or a solid and a sphere. The one place that tells.
+/// Decides how our laws treat a contact of YADE: as two disks or spheres, or as a solid and a sphere.
 #pragma once
 #include "engines/laws/sphere_pair.hpp"
 #include "engines/seam/yade.hpp"

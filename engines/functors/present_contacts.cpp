@@ -38,7 +38,7 @@ Answer answer_of(const yade::LawFunctor& law, const yade::Scene& scene)
 		ours += std::string(ours.empty() ? "" : ", ") + Functor::class_name;
 	});
 	if (found) return answer;
-	throw std::invalid_argument("present_contacts knows Graindrive's laws, " + ours + ", got " + law.getClassName());
+	throw std::invalid_argument("present_contacts needs one of Graindrive's laws, " + ours + ", got " + law.getClassName());
 }
 
 struct Extent {
@@ -100,7 +100,7 @@ const yade::Interaction* real_interaction(const yade::Body& body, int partner)
 
 Real radius_of(const yade::Body& body) { return static_cast<const yade::Sphere&>(*body.shape).radius; }
 
-/// What a contact carries: that of YADE's interaction, or what a new one will be given.
+/// The data of a contact: from YADE's interaction, or as a new contact will get them.
 class Carried {
 public:
 	Carried(const yade::Scene& scene, const yade::Interaction* known, Real radius, int id1, int id2,
@@ -146,7 +146,7 @@ geometry::Vec<3> middle_of(const geometry::Bounds<3>& box)
 	return middle;
 }
 
-/// True unless a point is farther than `reach` from the bounds, where a surface need not answer.
+/// False if a point is farther than `reach` from the bounds, so that the surface need not be evaluated.
 bool is_near(const geometry::Bounds<3>& box, const geometry::Vec<3>& point, Real reach)
 {
 	for (int axis = 0; axis < 3; ++axis)
@@ -196,7 +196,7 @@ std::vector<PresentContact> present_contacts(
 	const Answer answer = answer_of(law, scene);
 	const Vector3r periods = scene.isPeriodic ? Vector3r(scene.cell->hSize.colwise().norm()) : Vector3r(Vector3r::Zero());
 	if (scene.isPeriodic && scene.cell->hSize(0, 1) != 0)
-		throw std::invalid_argument("present_contacts knows no cell that is tilted; read O.interactions after a step");
+		throw std::invalid_argument("present_contacts does not support a tilted cell; read O.interactions after a step");
 	std::vector<PresentContact> found;
 	for (const auto& pair : pairs_along_x(extents(scene, periods[0]), periods[0]))
 		if (const auto contact = contact_of(scene, pair, periods, contact_maker, answer)) found.push_back(*contact);

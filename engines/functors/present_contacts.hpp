@@ -20,7 +20,7 @@ struct PresentContact {
 
 /// All contacts, by rising ids. Changes nothing. Left out are pairs that YADE does not let collide (members of one clump) and pairs
 /// of frozen bodies, which no force moves. Springs are those that the interactions carry, lengthened as the next step will do.
-/// @throws std::invalid_argument for a law that is none of ours
+/// @throws std::invalid_argument for a law that is not ours
 std::vector<PresentContact> present_contacts(
 	const yade::Scene& scene, const yade::LawFunctor& law, const Ip2_FrictMat_FrictMat_ContactPhys& contact_maker);
 

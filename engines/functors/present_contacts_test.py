@@ -149,5 +149,5 @@ def test_another_law_is_refused_by_name():
     disks.new_scene()
     disks.loop()
     maker = disks.engine("contacts").physDispatcher.functors[0]
-    with pytest.raises(ValueError, match="knows Graindrive's laws, .* got Law2_ScGeom_FrictPhys_CundallStrack"):
+    with pytest.raises(ValueError, match="needs one of Graindrive's laws, .* got Law2_ScGeom_FrictPhys_CundallStrack"):
         engines.present_contacts(O._sceneObj, w.Law2_ScGeom_FrictPhys_CundallStrack(), maker)

@@ -48,7 +48,7 @@ struct Cell {
 
 	/// The image of a point that lies in the cell: x - L floor((x - low)/L). The point's velocity changes by `velocity_change`.
 	///
-	/// A point in [low, high) stays as it is, so wrapping twice is wrapping once. A point that lies on a side up to round-off may
+	/// A point in [low, high) does not change, so wrapping twice equals wrapping once. A point that lies on a side up to round-off may
 	/// come out on the other one, or beyond it by a round-off: these are images of one another.
 	Image<D> wrap(const Vec<D>& at) const
 	{

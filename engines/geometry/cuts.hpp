@@ -26,7 +26,7 @@ struct CutPoint {
 	int count = 0;    ///< of active half-spaces
 	Vec<D> basis[D];  ///< orthonormal, spans their normals
 
-	/// What is left of a vector along the edge where the active half-spaces meet.
+	/// The part of a vector along the edge in which the active half-spaces intersect.
 	Vec<D> along_edge(Vec<D> v) const
 	{
 		for (int k = 0; k < count; ++k) v -= dot(v, basis[k]) * basis[k];

@@ -1,4 +1,4 @@
-/// The nearest point to p of all that lie in several solids: on an edge or corner where their surfaces meet.
+/// The point nearest to p that lies in all of several solids: on an edge or corner where their surfaces intersect.
 ///
 /// Sequential quadratic programming. At x the parts are replaced by their tangent half-spaces, d_i(x) + n_i (y - x) <= 0, and the next
 /// x is the y among them that is nearest to x + (p - x)/b. Flat parts take one step; at corners of D surfaces it is Newton's method.
@@ -20,7 +20,7 @@ constexpr double largest_excess = 0.25;     // of a step's length: how far it ma
 
 }  // namespace edge_search
 
-/// What is not told from 0 beside a distance between two points.
+/// A number that is negligible beside a distance between two points.
 template <int D>
 double distance_error(double distance, const Vec<D>& a, const Vec<D>& b, double relative = edge_search::converged)
 {

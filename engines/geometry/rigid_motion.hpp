@@ -27,7 +27,7 @@ struct RigidMotion {
 		turn = turn.advanced(spin, dt);
 	}
 
-	/// The frame's answer, seen from the world.
+	/// A result in the body's frame, transformed to the world's frame.
 	Nearest<D> nearest(const Surface<D>& shape, const Vec<D>& point) const
 	{
 		const Nearest<D> in_frame = shape.nearest(to_frame(point));
@@ -79,7 +79,7 @@ private:
 	RigidMotion<D> motion_;
 };
 
-/// A shape and its motion: what grains meet.
+/// A shape and its motion, with which grains have contacts.
 template <int D>
 struct MovingSurface {
 	SharedSurface<D> shape;

@@ -1,4 +1,4 @@
-/// Cubic interpolation, the checks of samples, and what is said of points outside the grid.
+/// Cubic interpolation, the checks of samples, and results for points outside the grid.
 #include "engines/geometry/sampled_distance.hpp"
 
 #include "engines/geometry/refuse.hpp"
@@ -85,13 +85,13 @@ template <int D>
 void SampledDistance<D>::check() const
 {
 	require(distances_.size() == grid_.size(), "sampled distances must be as many as nodes, " + std::to_string(grid_.size()),
-		distances_.size(), "give one a node, x fastest");
+		distances_.size(), "give one distance per node, x fastest");
 	for (std::size_t node = 0; node < distances_.size(); ++node)
 		require(std::isfinite(distances_[node]), "sampled distances must be finite", distances_[node],
 			"correct the one at " + text(grid_.node(index_of(node))));
 	const auto [least, most] = std::minmax_element(distances_.begin(), distances_.end());
 	require(*least <= 0 && *most > 0, "sampled distances must be <= 0 at some nodes, inside the solid, and > 0 at others",
-		text(Vec<2>{ *least, *most }), "let the grid reach over the surface, finer than the solid is thick");
+		text(Vec<2>{ *least, *most }), "extend the grid beyond the surface, with a spacing smaller than the solid's thickness");
 }
 
 template <int D>
@@ -103,7 +103,7 @@ void SampledDistance<D>::check_slopes() const
 			if (index[k] + 1 == grid_.count[k]) continue;
 			const double slope = std::abs(distances_[node + stride] - distances_[node]) / grid_.spacing[k];
 			require(slope <= steepest, "sampled distances of neighbours must not differ by more than their spacing", slope,
-				"give distances, not other functions, at " + text(grid_.node(index)));
+				"give true distances at " + text(grid_.node(index)));
 		}
 	}
 }
@@ -175,8 +175,8 @@ Nearest<D> SampledDistance<D>::inside(const Vec<D>& at) const
 template <int D>
 Nearest<D> SampledDistance<D>::beyond(const Vec<D>& at, const Vec<D>& in_grid) const
 {
-	require(margin_ > 0, "a sampled distance knows points inside its grid only, where the solid reaches the grid's outer layer",
-		at, "sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
+	require(margin_ > 0, "a sampled distance is known only inside its grid if the solid reaches the grid's outer layer", at,
+		"sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
 	const double way = norm(at - in_grid);
 	return { way + margin_, (at - in_grid) / way };
 }

@@ -46,9 +46,9 @@ struct SampleGrid {
 ///
 /// Outside the grid:
 ///
-/// - if all nodes of the grid's outer layer are outside the solid, the answer is a bound from below: the way to the grid plus
+/// - if all nodes of the grid's outer layer are outside the solid, the result is a lower bound: the distance to the grid plus
 ///   `margin`, the least distance in that layer. Bodies of a radius less than `margin` never touch the solid there.
-/// - if the solid reaches the outer layer the point is refused, for nothing is known about it
+/// - if the solid reaches the outer layer the point is refused, because nothing is known about it
 template <int D>
 class SampledDistance : public Surface<D> {
 public:

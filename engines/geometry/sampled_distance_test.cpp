@@ -151,12 +151,12 @@ TEST(SampledDistance, RefusesSamplesThatAreNoDistances)
 	};
 	EXPECT_EQ(said(0, -1.5), "");
 	EXPECT_TRUE(mentions(said(6, std::nan("")), "must be finite, got nan; correct the one at (2, 1)"));
-	EXPECT_TRUE(mentions(said(6, 3), "must not differ by more than their spacing, got 4.5; give distances")) << said(6, 3);
+	EXPECT_TRUE(mentions(said(6, 3), "must not differ by more than their spacing, got 4.5; give true distances")) << said(6, 3);
 	const auto with = [&](const SampleGrid<2>& other, const std::vector<double>& values) {
 		return complaint([&] { SampledDistance<2>{ other, values }; });
 	};
-	EXPECT_TRUE(mentions(with(grid, { 1, 2, 3 }), "as many as nodes, 20, got 3; give one a node, x fastest"));
-	EXPECT_TRUE(mentions(with(grid, std::vector<double>(20, 1)), "and > 0 at others, got (1, 1); let the grid"));
+	EXPECT_TRUE(mentions(with(grid, { 1, 2, 3 }), "as many as nodes, 20, got 3; give one distance per node, x fastest"));
+	EXPECT_TRUE(mentions(with(grid, std::vector<double>(20, 1)), "and > 0 at others, got (1, 1); extend the grid"));
 	EXPECT_TRUE(mentions(with({ { 0, 0 }, { 1, 0 }, { 4, 5 } }, heights), "spacing must be positive and finite, got (1, 0)"));
 	EXPECT_TRUE(mentions(with({ { 0, 0 }, { 1, 1 }, { 10, 2 } }, heights), "at least 4 nodes along each axis, got 2; refine"));
 	EXPECT_TRUE(mentions(with({ { 0, 0 }, { 1, 1 }, { 1ul << 40, 5 } }, heights), "at most 2^31 nodes"));

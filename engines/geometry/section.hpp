@@ -1,12 +1,12 @@
-/// The section of a solid in space by a plane: what disks in that plane meet.
+/// The section of a solid in space by a plane, for contacts with disks in that plane.
 #pragma once
 #include "engines/geometry/refuse.hpp"
 #include "engines/geometry/surface.hpp"
 
 namespace graindrive::geometry {
 
-/// By the plane z = 0 of a solid that goes on unchanged along z where disks come near it, so that distances in the plane are those in
-/// space. Elsewhere `nearest` refuses.
+/// The section by the plane z = 0 of a solid that is uniform along z where disks come near it, so that distances in the plane equal
+/// those in space. Elsewhere `nearest` refuses.
 class Section : public Surface<2> {
 public:
 	/// @throws std::invalid_argument without a surface
@@ -19,7 +19,7 @@ public:
 	Nearest<2> nearest(const Vec<2>& at) const override
 	{
 		const Nearest<3> found = whole_->nearest({ at[0], at[1], 0 });
-		require(std::abs(found.normal[2]) < steepest, "a solid that disks meet must go on unchanged along z", found.normal,
+		require(std::abs(found.normal[2]) < steepest, "a solid in contact with disks must be uniform along z", found.normal,
 			"that is its normal at the disk; sweep an outline along z, or turn the solid");
 		return { found.distance, unit(Vec<2>{ found.normal[0], found.normal[1] }) };
 	}

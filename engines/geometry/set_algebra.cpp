@@ -1,4 +1,4 @@
-/// Which answers follow from the parts at once, and which need the search for an edge.
+/// Decides which distances follow directly from the parts, and which need the search for an edge.
 #include "engines/geometry/set_algebra.hpp"
 
 #include "engines/geometry/edge_search.hpp"
@@ -7,7 +7,7 @@
 namespace graindrive::geometry {
 namespace {
 
-/// The answer outside an intersection whose nearest point is on an edge or corner; `bound` if none is found.
+/// The result outside an intersection if the nearest point is on an edge or corner; `bound` if none is found.
 template <int D>
 Nearest<D> off_the_edge(const Parts<D>& parts, const Vec<D>& p, const Nearest<D>& bound)
 {
@@ -37,7 +37,7 @@ Nearest<D> nearest_of_intersection(const Parts<D>& parts, const Vec<D>& p)
 template <int D>
 void require_parts(const std::string& what, const std::vector<SharedSurface<D>>& parts)
 {
-	require(!parts.empty(), what + " needs at least one part", "none", "give the solids that it is made of");
+	require(!parts.empty(), what + " needs at least one part", "none", "give the solids to combine");
 	for (std::size_t i = 0; i < parts.size(); ++i)
 		require(parts[i] != nullptr, what + " needs a shape for each part", "none for part " + std::to_string(i), "give one");
 }

@@ -1,6 +1,6 @@
 /// Solids made of solids: complement, intersection, union.
 ///
-/// With the parts' distances d_i exact, the answer is exact
+/// If the parts' distances d_i are exact, the result is exact
 ///
 ///   inside an intersection:  d = max d_i  (what is outside is a union, whose distance is the smallest)
 ///   outside of it:           d = max d_i, if that part's nearest point lies in all others
@@ -18,7 +18,7 @@
 
 namespace graindrive::geometry {
 
-/// The radius of spheres that every part answers rightly. What is outside a complement is inside its solid, where samples are known.
+/// The largest radius of spheres for which every part is right. What is outside a complement is inside its solid, where samples are known.
 template <int D>
 double least_of_parts(const std::vector<SharedSurface<D>>& parts)
 {

@@ -1,4 +1,4 @@
-/// A surface: what tells at any point how far a solid is, and which way leads out of it.
+/// A surface: gives at any point the distance to a solid, and the direction out of it.
 #pragma once
 #include <array>
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace graindrive::geometry {
 
-/// The answer at a point x. The nearest point of the surface is x - distance normal.
+/// The result at a point x. The nearest point of the surface is x - distance normal.
 template <int D>
 struct Nearest {
 	double distance;  ///< > 0 outside the solid, < 0 inside [m]
@@ -38,7 +38,7 @@ Bounds<D> moved_bounds(const Bounds<D>& in_frame, const std::array<Vec<D>, D>& a
 	return box;
 }
 
-/// A solid body by distance and normal. A shape of one's own derives from this and answers two questions; see `surface_test.cpp`.
+/// A solid body by distance and normal. A new shape derives from this and implements two functions; see `surface_test.cpp`.
 ///
 /// Where several points of the surface are equally near, as for the centre of a ball, any of them may be taken.
 template <int D>
@@ -51,10 +51,10 @@ public:
 
 	virtual Nearest<D> nearest(const Vec<D>& at) const = 0;
 
-	/// A box that holds the solid, for search and packing: nothing of the solid lies outside. The default holds everything.
+	/// A box that contains the whole solid, for search and packing. The default is infinite.
 	virtual Bounds<D> bounds() const { return {}; }
 
-	/// The radius [m] up to which spheres outside meet the surface where it is. Where distances are only known to be bounds, as beyond
+	/// The radius [m] up to which spheres outside meet the surface at the right place. Where only bounds of distances are known, as beyond
 	/// the grid of a sampled one, a larger sphere would meet it too soon.
 	virtual double largest_sphere() const { return Bounds<D>::infinity; }
 };

@@ -1,7 +1,7 @@
-/// One contact as a law sees it, and what a law says of it: forces, and the terms of which they consist.
+/// Input and output of a contact law: kinematics of one contact, forces, and the terms of which they consist.
 ///
-/// A law sees the kinematics of one contact and the tangential spring carried from the step before, and returns the forces
-/// and the new spring. It knows no bodies and keeps no state, so YADE's functors, GrainLoop and the tests all call this code.
+/// A law gets the kinematics of one contact and the tangential spring from the previous step, and returns the forces and the
+/// new spring. It has no access to bodies and no state, so YADE's functors, GrainLoop and the tests all call this code.
 ///
 /// `S` is the scalar (double, float or a SIMD pack), `T` the tangential vector: a signed `S` along t = z x n in two
 /// dimensions, `Vector3r` in three. `n` points from the grain that the force acts on (i) to its partner (j).
@@ -18,7 +18,7 @@
 
 namespace graindrive::laws {
 
-/// What a law is told about one contact at one step.
+/// Input of a law: one contact at one step.
 template <class S, class T>
 struct Kinematics {
 	S overlap;              ///< delta = R_i + R_j - r_ij [m], > 0
@@ -35,7 +35,7 @@ struct Squeezed {
 	S overlap, effective_radius, effective_mass;  ///< as in `Kinematics`
 };
 
-/// What a law answers: forces on grain i, and the tangential spring to carry to the next step.
+/// Output of a law: forces on grain i, and the tangential spring for the next step.
 template <class S, class T, class Mask>
 struct Response {
 	S normal;       ///< F_n, along -n on i [N]

@@ -70,7 +70,7 @@ inline Planar<S> force_on_first(const Planar<S>& n, const S& normal, const S& ta
 /// R_1 R_2 / (R_1 + R_2) [m]
 inline Real effective_radius(Real radius1, Real radius2) { return radius1 * radius2 / (radius1 + radius2); }
 
-/// 1 / (1/m_1 + 1/m_2) [kg] from that sum; 0 for two infinite masses: neither answers, so nothing is damped.
+/// 1 / (1/m_1 + 1/m_2) [kg] from that sum; 0 for two infinite masses: neither responds, so nothing is damped.
 inline Real effective_mass(Real sum_of_inverse_masses) { return sum_of_inverse_masses > 0 ? 1 / sum_of_inverse_masses : 0; }
 
 }  // namespace graindrive::laws

@@ -19,7 +19,7 @@ struct LawList {
 	template <class P>
 	using Any = std::variant<Law<P>...>;  ///< one of them, of the number type P
 
-	/// Calls visit(law) for each; of the law given only its type tells.
+	/// Calls visit(law) for each law; only the type of the argument matters.
 	template <class Visit>
 	static void for_each(Visit&& visit)
 	{

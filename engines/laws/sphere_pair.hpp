@@ -1,4 +1,4 @@
-/// Two disks or spheres in contact, or a solid and a sphere: what a law needs to know of them, and what its answer does to them.
+/// Two disks or spheres in contact, or a solid and a sphere: computes the input of a law, and applies its forces to them.
 #pragma once
 #include "engines/laws/contact.hpp"
 #include "engines/laws/pair_geometry.hpp"

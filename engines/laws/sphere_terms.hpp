@@ -10,7 +10,7 @@
 
 namespace graindrive::laws {
 
-/// Two numbers of a pair that do not change while it touches; what they mean is said at each law.
+/// Two constants of a pair in contact; each law explains their meaning.
 struct PairConstants {
 	Real stiffness, damping;
 };
@@ -61,7 +61,7 @@ constexpr bool has_terms_of(...)
 	return false;
 }
 
-/// True for the laws that the loop over spheres knows; of the law given only its type tells.
+/// True for the laws of the loop over spheres; only the type of the argument matters.
 constexpr auto is_for_spheres = [](const auto& law) constexpr { return has_terms_of<std::decay_t<decltype(law)>>(nullptr); };
 
 /// sqrt(R_eff) and m_eff.

@@ -9,20 +9,16 @@
 namespace graindrive {
 
 const char* const GrainLoop::documentation =
-	"Collider, contact law and integrator in one, for disks in the plane z = const or, with dimensions=3, spheres in space: the "
-	"same physics as YADE's loop with the Law2_ functor\n"
-	"of the same name, many times faster.\n\n"
-	"Stands in O.engines where NewtonIntegrator would, after measures and drives: O.engines = "
-	"[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)].\n"
-	"Clumps, solids, and grains that are driven, partly blocked, large or `watched`, are written "
-	"to YADE at every step; all others where somebody may look: at the end of\n"
-	"O.run, before engines that read bodies (PyRunner, recorders, engines of your own), every `syncEvery` steps and by sync(). "
-	"What\n"
-	"they write into bodies, forces that are added to O.forces, and settings of the loop are heard at once. Orientations of free "
-	"grains\n"
-	"are not kept. Raises ValueError for shapes that it cannot move, a time step above the "
-	"critical one and numbers out of range; a guard\n"
-	"stops the run where grains overlap by more than `largestOverlap` of a radius or leave the box (see `bounds`).";
+	"Collider, contact law and integrator in one engine, for disks in the plane z = const or, with dimensions=3, for\n"
+	"spheres in space: the same physics as YADE's loop with the Law2_ functor of the same name, many times faster.\n\n"
+	"It stands in O.engines in the place of NewtonIntegrator, after measures and drives: O.engines =\n"
+	"[ContactForceBinner(...), OscillationDrive(...), GrainLoop(...)]. Clumps, solids, and grains that are driven, partly\n"
+	"blocked, large or `watched` are written to YADE at every step. All other grains are written when other code may read\n"
+	"them: at the end of O.run, before engines that read bodies (PyRunner, recorders, your own engines), every `syncEvery`\n"
+	"steps and by sync(). GrainLoop takes up at once what such engines write into bodies, forces that are added to\n"
+	"O.forces, and changed settings of the loop. Orientations of free grains are not kept. Raises ValueError for shapes\n"
+	"that it cannot move, a time step above the critical one and numbers out of range; a guard stops the run if grains\n"
+	"overlap by more than `largestOverlap` of a radius or leave the box (see `bounds`).";
 
 loop::ContactLaw GrainLoop::contact_law() const
 {

@@ -31,35 +31,31 @@ public:
 		given("young", &Self::young);
 		given("poisson", &Self::poisson);
 		given("restitution", &Self::restitution);
-		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 compiles friction and its history out");
+		visit("friction", &Self::friction, "friction coefficient of every contact [-]; 0 switches friction and its history off");
 		visit("dimensions", &Self::dimensions, "2 for disks in a plane z = const, 3 for spheres in space");
 		visit("gravity", &Self::gravity, "acceleration [m/s^2]");
-		visit("periods", &Self::periods, "periods of the box in x, y and z [m], 0 where it is not periodic");
-		visit("precision", &Self::precision, "'double' or 'single': of the contacts; positions and velocities are always double");
-		visit("threads", &Self::threads, "number of threads; results have the same bits for any");
-		visit("skin", &Self::skin, "how far neighbours are listed [m]; 0 lets the loop choose");
-		visit("largestOverlap", &Self::largestOverlap, "overlap that stops the run [smaller radius]");
+		visit("periods", &Self::periods, "periods of the box in x, y and z [m], 0 along axes that are not periodic");
+		visit("precision", &Self::precision, "'double' or 'single', for contacts; positions and velocities are always double");
+		visit("threads", &Self::threads, "number of threads; results have the same bits for any number");
+		visit("skin", &Self::skin, "extra distance of the neighbour list [m]; 0: the loop chooses it");
+		visit("largestOverlap", &Self::largestOverlap, "largest allowed overlap [smaller radius]; a larger one stops the run");
 		visit("bounds", &Self::bounds,
-			"xLow, yLow, xHigh, yHigh [m], in space xLow, yLow, zLow, xHigh, yHigh, zHigh: a centre beyond stops the run; equal\n"
-			"numbers: no bound along that axis. By default a "
-			"grain is\n"
-			"lost three diameters below the last frozen or driven disk, where gravity pulls. Walls bound grains in any case");
+			"xLow, yLow, xHigh, yHigh [m], in space xLow, yLow, zLow, xHigh, yHigh, zHigh: a centre outside stops the run;\n"
+			"equal numbers: no bound along that axis. By default, with gravity, the bound is three diameters below the last\n"
+			"frozen or driven disk. Walls are bounds in any case");
 		visit("trusted", &Self::trusted,
-			"names of engines in O.engines that GrainLoop does not know, and that do no more than read and change bodies and add "
-			"forces");
+			"names of engines in O.engines that GrainLoop does not know, but that only read and change bodies and add forces");
 		visit("watched", &Self::watched,
-			"ids of free disks to be moved as bodies; a disk whose contacts a drive or measure asks for is added");
-		visit(
-			"syncEvery", &Self::syncEvery, "write all bodies to YADE every so many steps; 0: at the end of O.run and by sync()");
+			"ids of free disks that are handled as bodies; disks whose contacts a drive or measure needs are added");
+		visit("syncEvery", &Self::syncEvery, "write all bodies to YADE after so many steps; 0: only at the end of O.run");
 		visit("targetAreaFraction", &Self::targetAreaFraction,
-			"fraction at which walls halt [-]: areas of disks, volumes of spheres, over the box between walls or periodic sides; "
-			"0: they never "
-			"do");
+			"fraction at which walls stop [-]: areas of disks, volumes of spheres, over the box between walls or periodic sides; "
+			"0: they never stop");
 		visit("trackEnergy", &Self::trackEnergy,
-			"keep the energy ledger that `energy` tells; it begins when switched on, and anew with read(); a step then takes "
+			"keep the energy ledger, see `energy`; it begins when this is switched on, and again after read(); a step then takes "
 			"ten to thirty times as long");
-		visit("loads", &Self::loads, "id, F_x, F_y, F_z [N] of constant forces on bodies, as setLoad leaves them");
-		visit("wallSettings", &Self::wallSettings, "eleven numbers a wall, as setWall leaves them, at the last sync, for O.save");
+		visit("loads", &Self::loads, "id, F_x, F_y, F_z [N] of constant forces on bodies, set by setLoad");
+		visit("wallSettings", &Self::wallSettings, "eleven numbers per wall, set by setWall, at the last sync, for O.save");
 		visit("wallSprings", &Self::wallSprings,
 			"-2 - side of a wall or id of a solid, id, tangential spring [m] (in space its x, y, z), at the last sync, for "
 			"O.save");
@@ -70,9 +66,9 @@ public:
 		given("normalDampingRatio", &Self::normalDampingRatio);
 		given("tangentialDampingRatio", &Self::tangentialDampingRatio);
 		visit("damping", &Self::damping,
-			"Cundall's non-viscous damping [-] in [0, 1), as NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
+			"Cundall's non-viscous damping [-] in [0, 1), like NewtonIntegrator.damping: a' = a (1 - damping sign(a (v + a "
 			"dt/2)))");
-		visit("dampGravity", &Self::dampGravity, "damping acts on gravity too, as NewtonIntegrator.dampGravity");
+		visit("dampGravity", &Self::dampGravity, "damping also acts on gravity, like NewtonIntegrator.dampGravity");
 	}
 	void check() const;
 	void assigned(const std::string& name);
@@ -84,21 +80,21 @@ public:
 
 	/// Writes the loop's state into all of YADE's bodies.
 	void sync();
-	/// The same, unless they are true already: what others have written into them since is not lost.
+	/// The same, unless they are up to date: changes that other code has made since are then not overwritten.
 	void show_bodies();
-	/// Python may ask while the loop runs in the background: whoever holds this finds it between two steps.
+	/// Python may call while the loop runs in the background: holding this lock guarantees that the loop is between two steps.
 	using Turn = std::unique_lock<std::recursive_mutex>;
 	Turn take_turn() const;
 	/// For velocities of O.bodies that belong to the step itself, not half a step behind: takes the first step with half a kick.
 	void begin_on_step();
-	/// Takes the scene anew from YADE's bodies at the next step, keeping the springs of contacts that stay.
+	/// Reads the scene from YADE's bodies again at the next step, keeping the springs of contacts that persist.
 	void read();
 	/// What `build` demands of YADE's scene, before the first step.
 	void require_scene();
 	/// Writes loop, bodies and the engines of O.engines that are ours into one file; `saved_scene` is what O.save wrote, or nothing.
 	void save_checkpoint(const std::string& path, const std::string& saved_scene);
-	/// Goes on from such a file in the same scene, built anew or loaded. Changes nothing where it refuses the file.
-	/// @throws std::runtime_error naming the file and what is wrong with it, or what of the scene does not fit
+	/// Continues from such a file in the same scene, built again or loaded. Changes nothing if it refuses the file.
+	/// @throws std::runtime_error naming the file and its fault, or the part of the scene that does not fit
 	void restore_checkpoint(const std::string& path);
 	/// What O.save wrote when the file was made; empty if nothing.
 	static std::string saved_scene(const std::string& path);
@@ -107,7 +103,7 @@ public:
 	void remove_wall(loop::Side side);
 	std::vector<loop::Wall<3>> walls() const;
 	loop::Side side_named(const std::string& name) const;
-	/// A constant force on a body's free directions, until it is set anew.
+	/// Sets a constant force on a body's free directions.
 	void set_load(int body, const Vector3r& force);
 	/// The running loop; made from YADE's bodies if there is none yet.
 	loop::Mirror& running();

@@ -10,7 +10,7 @@ namespace graindrive {
 
 namespace {
 
-/// A body of YADE: what it is, by which a file is known to fit, and where it is.
+/// A body of YADE: its properties, which must agree between file and scene, and its motion.
 struct BodyRecord {
 	int exists = 0, clump = -1;
 	Real radius = 0, mass = 0;
@@ -49,7 +49,7 @@ struct CellRecord {
 	Real numbers[7 * 9] = {};
 };
 
-/// visit(matrix) for all of a cell that decides how it goes on.
+/// Calls visit(matrix) for the complete state of a cell.
 template <class ACell, class Visit>
 void each_matrix(ACell& cell, Visit&& visit)
 {
@@ -135,7 +135,7 @@ Surroundings of(const yade::Scene& scene)
 
 std::string difference(const BodyRecord& saved, const BodyRecord& here)
 {
-	if (saved.exists != here.exists) return saved.exists ? "is not in the scene" : "was not there";
+	if (saved.exists != here.exists) return saved.exists ? "is not in the scene" : "is not in the checkpoint";
 	if (saved.clump != here.clump) return "is in another clump";
 	if (saved.radius != here.radius) return "has another radius";
 	if (saved.surface != here.surface) return "has another surface";
@@ -160,7 +160,7 @@ std::string misfit(const Surroundings& saved, const Surroundings& here)
 	return "";
 }
 
-/// The physics of a loop, name by name: what may not differ between a file and the scene that it is read into.
+/// The physics of a loop by name; these values must agree between a file and the scene that reads it.
 std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 {
 	std::vector<std::pair<std::string, std::string>> all;

@@ -46,22 +46,19 @@ void restore(GrainLoop& loop, const std::string& path)
 void bind_checkpoint(GrainLoopClass& cls)
 {
 	cls.def("checkpoint", checkpoint, (py::arg("path"), py::arg("saved_scene") = bytes("")),
-		"Write loop, bodies, drives and measures into one file; a run restored from it goes on to the last bit. Other engines\n"
-		"(PyRunner, recorders) are named in it, no more. saved_scene: bytes that O.save wrote, to go along; "
-		"graindrive.scenes.scene.save\n"
-		"does that. Raises RuntimeError with the system's reason if it cannot be written; an older file then stays.");
+		"Write loop, bodies, drives and measures into one file; a run restored from it continues with the same bits. Of other\n"
+		"engines (PyRunner, recorders) it stores only the names. saved_scene: bytes that O.save wrote, to be stored too, as\n"
+		"graindrive.scenes.scene.save does. Raises RuntimeError with the system's reason if the file cannot be written; an\n"
+		"older file is then kept.");
 	cls.def("restore", restore, (py::arg("path")),
-		"Go on from a checkpoint in the same scene, built anew or loaded: positions, velocities, O.iter and the state of drives "
-		"and\n"
-		"measures come from the file; threads, syncEvery, largestOverlap and bounds stay. Raises RuntimeError with the reason, "
-		"and\n"
-		"changes nothing, for a file that is damaged, cut, foreign or of another version, and for a scene with other bodies, "
-		"engines,\n"
-		"time step or law.");
+		"Continue from a checkpoint in the same scene, built again or loaded: positions, velocities, O.iter and the state of\n"
+		"drives and measures come from the file; threads, syncEvery, largestOverlap and bounds do not change. Raises\n"
+		"RuntimeError with the reason, and changes nothing, for a file that is damaged, truncated, of another program or of\n"
+		"another version, and for a scene with other bodies, engines, time step or law.");
 	py::def("saved_scene", saved_scene, (py::arg("path")),
-		"What O.save wrote when a checkpoint was made, as bytes; empty if nothing. Raises RuntimeError as GrainLoop.restore.");
+		"The bytes of O.save that a checkpoint holds; empty if there are none. Raises RuntimeError like GrainLoop.restore.");
 	py::def("seal_scene", seal_scene, (py::arg("path"), py::arg("saved_scene")),
-		"Write bytes that O.save made into a checkpoint of a scene on YADE's own loop: atomic, with checksum and version.");
+		"Write bytes of O.save into a checkpoint of a scene on YADE's own loop, in one step, with checksum and version.");
 }
 
 }  // namespace graindrive

@@ -122,7 +122,7 @@ def test_a_file_that_does_not_fit_the_scene_is_refused_and_changes_nothing(saved
 @pytest.mark.parametrize(
     "damage, why",
     [
-        (lambda good: good[:-9], "cut short"),
+        (lambda good: good[:-9], "truncated"),
         (lambda good: good[:2000] + bytes([good[2000] ^ 1]) + good[2001:], "damaged"),
         (lambda good: good[:16] + bytes([99]) + good[17:], "has version 99"),
         (lambda good: b"a poem", "not a checkpoint of GrainLoop"),
@@ -148,5 +148,5 @@ def test_a_file_of_yades_loop_is_not_one_of_grain_loop(saved, tmp_path):
 
 
 def test_a_loop_alone_holds_no_scene_to_load(saved):
-    with pytest.raises(RuntimeError, match="holds no scene of YADE's"):
+    with pytest.raises(RuntimeError, match="holds no YADE scene"):
         scene.load(saved[0])

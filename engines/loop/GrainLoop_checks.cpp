@@ -1,4 +1,4 @@
-/// What GrainLoop refuses: numbers out of range, a cell with another period, bodies that are gone, disks that meet across an axis left free.
+/// GrainLoop's checks: numbers out of range, a cell with another period, missing bodies, contacts across a non-periodic axis.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -34,11 +34,11 @@ void GrainLoop::check() const
 	require(syncEvery >= 0, "GrainLoop.syncEvery must not be negative", syncEvery);
 	require(
 		targetAreaFraction >= 0 && targetAreaFraction < 1, "GrainLoop.targetAreaFraction must lie in [0, 1)", targetAreaFraction);
-	require(loads.size() % 4 == 0, "GrainLoop.loads must hold four numbers a body; use setLoad", loads.size());
-	require(wallSettings.size() % numbers_per_wall == 0, "GrainLoop.wallSettings must hold eleven numbers a wall; use setWall",
+	require(loads.size() % 4 == 0, "GrainLoop.loads must hold four numbers per body; use setLoad", loads.size());
+	require(wallSettings.size() % numbers_per_wall == 0, "GrainLoop.wallSettings must hold eleven numbers per wall; use setWall",
 		wallSettings.size());
 	const std::size_t of_a_spring = plane ? 3 : 5;
-	const char* so_many = plane ? "three numbers a contact" : "five numbers a contact";
+	const char* so_many = plane ? "three numbers per contact" : "five numbers per contact";
 	require(wallSprings.size() % of_a_spring == 0, (std::string("GrainLoop.wallSprings must hold ") + so_many).c_str(),
 		wallSprings.size());
 	require(bounds.empty() || bounds.size() == 2u * dimensions,
@@ -46,10 +46,10 @@ void GrainLoop::check() const
 			  : "GrainLoop.bounds must be six numbers, xLow, yLow, zLow, xHigh, yHigh, zHigh, or none",
 		bounds.size());
 	require(std::all_of(bounds.begin(), bounds.end(), [](Real b) { return std::isfinite(b); }),
-		"GrainLoop.bounds must be finite; equal numbers leave an axis without bound", "one that is not");
+		"GrainLoop.bounds must be finite; equal numbers mean no bound along an axis", "one that is not");
 	for (std::size_t k = 0; k < bounds.size() / 2; ++k)
 		require(
-			bounds[k] <= bounds[dimensions + k], "GrainLoop.bounds must begin with the low ones, low <= high", "the other order");
+			bounds[k] <= bounds[dimensions + k], "GrainLoop.bounds must hold the low ones first, low <= high", "the other order");
 	require(springs.size() % of_a_spring == 0, (std::string("GrainLoop.springs must hold ") + so_many).c_str(), springs.size());
 }
 
@@ -78,8 +78,8 @@ void GrainLoop::require_periods() const
 		const Real period = periods[axis], edge = scene->cell->hSize(axis, axis);
 		if (period == 0 || std::abs(period - edge) <= 1e-12 * edge) continue;
 		throw std::invalid_argument(std::string("GrainLoop: the period in ") + "xyz"[axis] + " is " + std::to_string(period) +
-									", O.cell repeats after " + std::to_string(edge) +
-									"; make them equal (O.cell.setBox, or periods), or 0 for an axis that does not repeat");
+									", but O.cell has the period " + std::to_string(edge) +
+									"; make them equal (O.cell.setBox, or periods), or set 0 for an axis that is not periodic");
 	}
 }
 

@@ -9,7 +9,7 @@ py::dict energy(GrainLoop& loop)
 	const Running running(loop);
 	const loop::Energies* ledger = running->energies();
 	if (!ledger)
-		throw std::runtime_error("GrainLoop.energy is kept while trackEnergy is True; set it before the steps that count");
+		throw std::runtime_error("GrainLoop.energy is known only while trackEnergy is True; set it before the steps to track");
 	const loop::Energies& e = *ledger;
 	const std::vector<double> works = running->work_by_body();
 	py::dict all, by_body;

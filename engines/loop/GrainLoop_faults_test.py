@@ -146,7 +146,7 @@ def test_periods_that_contradict_the_cell_are_refused(periods):
     scene.add_disks([2], [2], [0.5], 1.0)
     O.engines = [GrainLoop(periods=periods)]
     O.dt = 1e-4
-    with pytest.raises(ValueError, match="O.cell repeats after"):
+    with pytest.raises(ValueError, match="O.cell has the period"):
         step()
 
 

@@ -34,12 +34,12 @@ void GrainLoop::meet_engines()
 		if (engine->dead && is_rival(name)) continue;
 		if (is_rival(name))
 			throw std::runtime_error(
-				"GrainLoop takes the place of collider, InteractionLoop and NewtonIntegrator; O.engines also holds " + name +
+				"GrainLoop replaces collider, InteractionLoop and NewtonIntegrator, but O.engines also holds " + name +
 				": remove it");
 		const Reach reach = reach_of(*engine, trusted);
 		if (reach == Reach::unknown && !engine->dead)
 			throw std::runtime_error("GrainLoop does not know what " + name +
-									 " needs: it may read interactions, which YADE does not keep here; remove it "
+									 " needs: it may read interactions, which GrainLoop does not keep; remove it "
 									 "from O.engines, use YADE's loop, or add its name to GrainLoop.trusted if it only reads and "
 									 "changes bodies and adds "
 									 "forces");
@@ -48,7 +48,7 @@ void GrainLoop::meet_engines()
 	met_engines_ = here, met_dead_ = dead;
 }
 
-/// After a step: will somebody look at bodies before the next one? Then they must be true.
+/// After a step: true if other code may read bodies before the next step, so that they must be up to date.
 bool GrainLoop::someone_may_look() const
 {
 	if (last_step_of_run() || (syncEvery > 0 && (scene->iter + 1) % syncEvery == 0)) return true;

@@ -9,14 +9,14 @@ yade::Scene* scene_of_yade() { return py::extract<yade::Scene*>(py::import("yade
 
 namespace {
 
-/// YADE's scene, in which the loop must stand: another one answers for bodies that it does not move.
+/// YADE's scene, which must contain this loop: a loop of another scene does not move the bodies of this one.
 yade::Scene* scene_with(const GrainLoop& loop)
 {
 	yade::Scene* scene = scene_of_yade();
 	const auto is_it = [&](const auto& engine) { return engine.get() == &loop; };
 	if (std::none_of(scene->engines.begin(), scene->engines.end(), is_it))
 		throw std::runtime_error(
-			"this GrainLoop does not stand in O.engines (O.load, O.reset and O.switchToScene bring others); ask "
+			"this GrainLoop does not stand in O.engines (O.load, O.reset and O.switchToScene replace it); use "
 			"the one that is there, e.g. O.engines[-1]");
 	return scene;
 }
@@ -94,46 +94,41 @@ void bind_loop()
 	auto cls = seam::bind<GrainLoop>(GrainLoop::documentation);
 	cls.def("sync", &GrainLoop::sync, "Write positions, velocities and spins of all grains into O.bodies.");
 	cls.def("showBodies", &GrainLoop::show_bodies,
-		"Write positions, velocities and spins of all grains into O.bodies, unless they are true already; after O.pause().");
+		"Write positions, velocities and spins of all grains into O.bodies unless they are up to date; for O.pause().");
 	cls.def("read", &GrainLoop::read,
-		"Take the scene anew from O.bodies at the next step; springs of contacts that stay are those of the last sync.");
+		"Read the scene from O.bodies again at the next step; contacts that persist have the springs of the last sync.");
 	cls.def("requireScene", require_scene,
-		"Check that GrainLoop can move what stands in O.bodies, O.cell and O.engines, before the first step. Raises ValueError "
-		"or\n"
+		"Check, before the first step, that GrainLoop can run with O.bodies, O.cell and O.engines. Raises ValueError or\n"
 		"RuntimeError with the rule, the body or engine and the way out. The time step is checked when the run begins.");
 	const std::string of_contacts =
-		"Contacts of the last step, all at the positions of its beginning, as YADE's are after a step; those at the present "
-		"positions\n"
-		"while a step is under way (in engines before GrainLoop), and always those of spheres. Arrays: i, j, slipping, overlap "
-		"[m],\n"
+		"Contacts of the last step, at the positions of its beginning, like YADE's after a step. During a step (in engines\n"
+		"before GrainLoop), and always for spheres, contacts at the present positions. Arrays: i, j, slipping, overlap [m],\n"
 		"slip of i [m], along z x n for disks, shape (n, 3) for spheres ([N] with " +
 		laws::laws_that_remember_forces() +
-		",\nwhich remember a force), shape (n,); point [m], the middle of the overlap beside i, normal n from i to j,\n"
+		",\nwhich store a force), shape (n,); point [m], the middle of the overlap, in i's image, normal n from i to j,\n"
 		"normal_force and tangential_force on j [N], shape (n, 3).";
 	cls.def("contacts", contacts, of_contacts.c_str());
 	cls.def("presentContacts", present_contacts,
-		"Contacts at the present positions, those that the next step will find, as of contacts(); nothing changes. Contacts "
-		"with\n"
-		"flat walls are among them, with j = -2, -3, -4, -5, -6, -7 for x_low, x_high, y_low, y_high, z_low, z_high; those with\n"
-		"solids have the id of the solid's body.");
+		"Contacts at the present positions, as the next step will find them, with the arrays of contacts(); nothing changes.\n"
+		"Contacts with flat walls are included, with j = -2, -3, -4, -5, -6, -7 for x_low, x_high, y_low, y_high, z_low,\n"
+		"z_high; contacts with solids have the id of the solid's body.");
 	bind_checkpoint(cls);
 	bind_walls(cls);
 	bind_energy(cls);
 	cls.add_property("ids", ids, "ids of the grains, in the order of positions, velocities and spins, shape (n,)");
-	cls.add_property("positions", positions, "centres [m], shape (n, 2), of spheres (n, 3); inside the periodic box");
-	cls.add_property("velocities", velocities, "velocities, half a step behind [m/s], shape (n, 2), of spheres (n, 3)");
-	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,), of spheres (n, 3)");
+	cls.add_property("positions", positions, "centres [m], shape (n, 2), for spheres (n, 3); inside the periodic box");
+	cls.add_property("velocities", velocities, "velocities [m/s], half a step earlier, shape (n, 2), for spheres (n, 3)");
+	cls.add_property("spins", spins, "angular velocities [rad/s], shape (n,), for spheres (n, 3)");
 	cls.def("beginOnStep", begin_on_step,
-		"For velocities of O.bodies that belong to the step itself, not half a step behind (LAMMPS): takes one step with half a "
-		"kick.");
-	cls.def("kineticEnergyOnStep", kinetic_energy_on_step, "Kinetic energy with the velocities of the whole step [J].");
-	cls.add_property("kineticEnergy", kinetic_energy, "of the free grains, translation and rotation [J]");
-	cls.add_property("searches", searches, "searches for neighbours so far");
-	cls.add_property("processor", processor, "instructions in use: 'avx512', 'avx2' or 'portable'");
+		"Use this if the velocities in O.bodies belong to the time of the positions, not half a step earlier (as in LAMMPS):\n"
+		"the next step then changes velocities by half a time step only.");
+	cls.def("kineticEnergyOnStep", kinetic_energy_on_step, "Kinetic energy with velocities at the time of the positions [J].");
+	cls.add_property("kineticEnergy", kinetic_energy, "kinetic energy of the free grains, translation and rotation [J]");
+	cls.add_property("searches", searches, "number of neighbour searches so far");
+	cls.add_property("processor", processor, "instruction set in use: 'avx512', 'avx2' or 'portable'");
 	py::def("processors", processors,
-		"Kernels of GrainLoop that this processor runs, the best first: of 'avx512', 'avx2', 'portable'. The environment "
-		"variable\n"
-		"GRAINDRIVE_PROCESSOR chooses one.");
+		"Kernels of GrainLoop that this processor can run, the best first, out of 'avx512', 'avx2', 'portable'. The environment\n"
+		"variable GRAINDRIVE_PROCESSOR chooses one.");
 }
 
 }  // namespace graindrive

@@ -32,8 +32,8 @@ void GrainLoop::assigned(const std::string& name)
 	settings_changed_ = true;
 }
 
-/// Goes on with settings that Python changed: what the kernels use is changed in the running loop, what decides who is a body by
-/// reading the scene anew.
+/// Applies settings that Python changed: settings of the kernels are changed in the running loop; settings that decide which grains
+/// are bodies need a new reading of the scene.
 void GrainLoop::hear_settings()
 {
 	if (!settings_changed_) return;
@@ -146,7 +146,7 @@ void GrainLoop::set_load(int id, const Vector3r& force)
 		throw std::invalid_argument(
 			"GrainLoop.setLoad: body " + std::to_string(id) + " does not move; free one of its directions first");
 	if (dimensions == 2 && force[2] != 0)
-		throw std::invalid_argument("GrainLoop.setLoad: a load on a disk lies in the plane, got F_z = " +
+		throw std::invalid_argument("GrainLoop.setLoad: a load on a disk must lie in the plane, got F_z = " +
 									std::to_string(force[2]) + " N; leave it out, or set GrainLoop.dimensions to 3");
 	for (std::size_t k = 0; k + 3 < loads.size(); k += 4)
 		if (int(loads[k]) == id) {

@@ -192,8 +192,8 @@ def driven():
     [
         (lambda: setattr(O.cell, "homoDeform", 2), "homoDeform must be 1"),
         (lambda: setattr(O.cell, "homoDeform", 0), "homoDeform must be 1"),
-        (clumped, "free disks alone"),
-        (driven, "free disks alone"),
+        (clumped, "only free disks"),
+        (driven, "only free disks"),
         (lambda: setattr(O.engines[-1], "damping", 0.3), "damping"),
     ],
 )

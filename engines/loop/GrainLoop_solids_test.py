@@ -163,7 +163,7 @@ def test_disks_meet_the_section_of_a_swept_outline():
     solid(surfaces.ball((0, 0, 0.2), 2))
     disks.disk(0, 2.4)
     ours(gravity=(0, -1, 0), dimensions=2)
-    with pytest.raises(RuntimeError, match="must go on unchanged along z"):
+    with pytest.raises(RuntimeError, match="must be uniform along z"):
         disks.run(10)
 
 

@@ -231,7 +231,7 @@ def test_a_pressed_lid_and_a_sliding_floor():
         (dict(damping=0.2), "non-viscous damping"),
         (
             {"law": "cundallStrack", "young": 1e5, "poisson": 0.3},
-            "knows the laws hertzHistory, hertzRestitution and springDashpot",
+            "has only the laws hertzHistory, hertzRestitution and springDashpot",
         ),
         (dict(bounds=[0, 0, 1, 1]), "six numbers"),
         (dict(springs=[1, 2, 3]), "five numbers"),

@@ -14,17 +14,17 @@ geometry::Vec<3> slide_of(const py::object& given, loop::Side side, int dimensio
 	}
 	const py::extract<Vector3r> vector(given);
 	if (!vector.check() && !(PySequence_Check(given.ptr()) && py::len(given) == 3))
-		throw std::invalid_argument("GrainLoop.setWall: slide of a wall for spheres is a vector (x, y, z) [m/s]");
+		throw std::invalid_argument("GrainLoop.setWall: slide of a wall for spheres must be a vector (x, y, z) [m/s]");
 	for (int k = 0; k < 3; ++k) slide[k] = py::extract<Real>(given[k]);
 	return slide;
 }
 
-/// setWall(side, position=..., velocity=... | pressure=..., mass=..., ...): what is not said stays as it is.
+/// setWall(side, position=..., velocity=... | pressure=..., mass=..., ...): omitted values do not change.
 py::object set_wall(const py::tuple& arguments, const py::dict& keywords)
 {
 	GrainLoop& loop = py::extract<GrainLoop&>(arguments[0]);
 	if (py::len(arguments) != 2)
-		throw std::invalid_argument("GrainLoop.setWall takes a side, then keywords: setWall('y_low', position=0)");
+		throw std::invalid_argument("GrainLoop.setWall needs a side, then keywords: setWall('y_low', position=0)");
 	loop::Wall<3> wall;
 	wall.side = loop.side_named(py::extract<std::string>(arguments[1]));
 	bool known = false;
@@ -34,7 +34,7 @@ py::object set_wall(const py::tuple& arguments, const py::dict& keywords)
 		throw std::invalid_argument(
 			"GrainLoop.setWall: a new wall needs a position [m], got none for " + loop::name_of(wall.side));
 	if (keywords.has_key("velocity") && keywords.has_key("pressure"))
-		throw std::invalid_argument("GrainLoop.setWall: a wall has a velocity or a pressure, got both");
+		throw std::invalid_argument("GrainLoop.setWall: a wall must have either a velocity or a pressure, got both");
 	const py::list items = keywords.items();
 	for (long k = 0; k < py::len(items); ++k) {
 		const std::string key = py::extract<std::string>(items[k][0]);
@@ -115,28 +115,25 @@ void set_load(GrainLoop& loop, int body, const Vector3r& force)
 void bind_walls(GrainLoopClass& cls)
 {
 	cls.def("setWall", py::raw_function(set_wall, 2),
-		"setWall(side, position=, velocity= or pressure=, slide=, mass=, damping=, speedLimit=): a flat wall on the side "
-		"'x_low', 'x_high',\n"
-		"'y_low', 'y_high', for spheres also 'z_low' or 'z_high'; what is not said stays as it is. Grains meet it as a frozen "
-		"grain of infinite radius and mass.\n"
-		"position [m], velocity along its axis and slide along itself [m/s] (for spheres a vector); or pressure inwards [N/m]\n"
-		"([N/m^2] for spheres), under which it moves as mass [kg] dv/dt = F - pressure length - damping [kg/s] v with |v| <= "
-		"speedLimit [m/s].\n"
-		"Raises ValueError with the rule for what cannot be.");
-	cls.def("removeWall", remove_wall, (py::arg("side")), "Take the wall on this side away.");
+		"setWall(side, position=, velocity= or pressure=, slide=, mass=, damping=, speedLimit=): set a flat wall on the side\n"
+		"'x_low', 'x_high', 'y_low', 'y_high', for spheres also 'z_low' or 'z_high'; omitted values do not change. In contacts\n"
+		"the wall counts as a frozen grain of infinite radius and mass.\n"
+		"position [m], velocity along the wall's axis and slide along the wall [m/s] (for spheres a vector); or pressure\n"
+		"inwards [N/m] ([N/m^2] for spheres), with the motion mass [kg] dv/dt = F - pressure length - damping [kg/s] v with\n"
+		"|v| <= speedLimit [m/s]. Raises ValueError with the rule for bad input.");
+	cls.def("removeWall", remove_wall, (py::arg("side")), "Remove the wall on this side.");
 	cls.add_property("walls", walls,
 		"side -> position [m], velocity, slide [m/s], force of the grains [N], length [m] (area [m^2]), measuredPressure [N/m] "
 		"([N/m^2]), and "
-		"what setWall set");
+		"the settings of setWall");
 	cls.def("wallContacts", wall_contacts,
-		"Contacts with walls as arrays, as contacts() with the wall's side in place of j; normal outwards, forces on the wall.");
+		"Contacts with walls, like contacts(), with the wall's side in place of j; normal outwards, forces on the wall.");
 	cls.add_property("areaFraction", filled_fraction,
-		"areas of all disks (volumes of all spheres) that are not frozen over that of the box between walls or periodic sides "
-		"[-];\n"
-		"overlapping beads count twice");
+		"area of all disks (volume of all spheres) that are not frozen, over that of the box between walls or periodic sides\n"
+		"[-]; overlapping beads count twice");
 	cls.def("setLoad", set_load, (py::arg("body"), py::arg("force")),
-		"A constant force [N] on the free directions of a clump or disk: a wall of frozen disks under a pressure is a clump, "
-		"free along one axis.");
+		"Apply a constant force [N] to the free directions of a clump or disk, for example to a wall under pressure, which is a\n"
+		"clump of frozen disks that is free along one axis.");
 }
 
 }  // namespace graindrive

@@ -43,7 +43,7 @@ void require_explicable(const Scene<D>& scene)
 	const auto remembers_force = [](const auto& law) { return law.remembers_force; };
 	const auto remembers_length = [](const auto& law) { return !law.remembers_force; };
 	if (std::visit(remembers_force, scene.law))
-		throw std::invalid_argument("the energy ledger knows no exact entries for the laws " + laws::laws_that_remember_forces() +
+		throw std::invalid_argument("the energy ledger has no exact entries for the laws " + laws::laws_that_remember_forces() +
 									"; switch trackEnergy off, or take " +
 									laws::listed(laws::names_where(remembers_length), " or "));
 	if (scene.damping > 0)
@@ -51,7 +51,7 @@ void require_explicable(const Scene<D>& scene)
 			sentence("the energy ledger needs damping = 0, got ", scene.damping, "; switch trackEnergy off, or damping"));
 	for (std::size_t b = 0; b < scene.bodies.size(); ++b)
 		if (!turns_exactly(scene.bodies[b]))
-			throw std::invalid_argument(sentence("the energy ledger knows no exact entries for a body with different moments of "
+			throw std::invalid_argument(sentence("the energy ledger has no exact entries for a body with different moments of "
 												 "inertia that turns about all axes, got body ",
 				b, "; switch trackEnergy off, or block two of its rotations"));
 }
@@ -68,7 +68,7 @@ SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
 	return { body.velocity + cross(body.spin, arm), body.spin * row.radius };
 }
 
-/// A contact at a step: `before` is what the law was told, `after` belongs to the half step after it.
+/// A contact at a step: `before` is the input of the law, `after` belongs to the half step after it.
 template <int D>
 void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
 	const RelativeMotion<D>& after, const Tangent<D>& slip, const Vec<D>& image_before, const Vec<D>& image_after)

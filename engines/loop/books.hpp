@@ -1,4 +1,4 @@
-/// What the energy ledger is told of a step: remembered before anything moves, booked when all has moved.
+/// Collects the energy ledger's data of a step: stored before the grains move, booked after they have moved.
 #pragma once
 #include "engines/loop/energy_ledger.hpp"
 #include "engines/loop/surfaces.hpp"

@@ -38,8 +38,8 @@ double Budgets<D>::body_speed(std::size_t b) const
 	return length(body.velocity - drift_of(state.n_blocks() + b)) + length(body.spin) * state.reach[b];
 }
 
-/// Somewhat longer than the pace, but so short that what drifts fastest gains a diameter on what drifts slowest: the cells in which
-/// displacements are compared must hold all that may meet until then.
+/// Somewhat longer than the pace, but so short that the fastest drift exceeds the slowest by at most one diameter: the cells in which
+/// displacements are compared must contain all grains that may touch until then.
 template <int D>
 void Budgets<D>::choose_horizon()
 {
@@ -164,7 +164,7 @@ void Budgets<D>::choose_pace(const PairCounts& counts, std::size_t candidates)
 	state.pace = std::clamp(std::sqrt(selecting_cost<D> * candidates / more_per_step), fewest_steps, most_steps);
 }
 
-/// In the plane each of two grains may have gone as far as the farthest one has.
+/// In the plane each of two grains may have moved as far as the farthest one.
 template <>
 double Budgets<2>::approach_before_selection() const
 {
@@ -173,7 +173,7 @@ double Budgets<2>::approach_before_selection() const
 	return 2 * farthest + state.images_went_since_search + state.images_may_go;
 }
 
-/// In space by what neighbours have gone differently.
+/// In space the differences of displacements between neighbours count.
 template <>
 double Budgets<3>::approach_before_selection() const
 {

@@ -1,4 +1,4 @@
-/// How far grains may go before pairs are selected anew: every block of free grains and every body has a budget of its own.
+/// The distances that grains may travel before pairs are selected again: every block of free grains and every body has its own budget.
 ///
 /// A pair that is not selected was farther apart than both budgets together, and a grain's way is never longer than sum v_max dt of its
 /// block: until a block has used up its budget no such pair can touch. A few fast grains so cost pairs around themselves alone.
@@ -34,14 +34,14 @@ public:
 	/// Of two neighbours towards each other [m/s].
 	double fastest_approach() const;
 	double smallest() const;
-	/// What a point of a body may go in a step [m/s], against the body's drift.
+	/// The largest speed of a point of a body relative to the body's drift [m/s].
 	double body_speed(std::size_t body) const;
-	/// What a party may have gone since the last selection, or may go until the next [m].
+	/// The largest distance that a party may have moved since the last selection, or may move until the next one [m].
 	double way(std::size_t party) const;
 	double way_to_come(std::size_t party) const;
-	/// After a step: what blocks have travelled the kernels know; here bodies and images.
+	/// After a step: adds the travel of bodies and images; the kernels add that of blocks.
 	void spend(double drift);
-	/// Images across the side have gone so much further [m].
+	/// Adds the travel of the images across the side [m].
 	void spend_on_images(double way);
 	void begin_selection();
 

@@ -102,9 +102,9 @@ std::string read_checkpoint(const std::string& path, Contents expected)
 						 "; continue with the version that wrote it");
 	if (all.size() - header_length != numbers[1])
 		refuse(path,
-			"was cut short: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
+			"is truncated: " + std::to_string(all.size() - header_length) + " bytes instead of " + std::to_string(numbers[1]));
 	std::string body = all.substr(header_length);
-	if (checksum_of(body) != numbers[2]) refuse(path, "is damaged: its checksum does not fit its contents");
+	if (checksum_of(body) != numbers[2]) refuse(path, "is damaged: its checksum does not match its contents");
 	return body;
 }
 

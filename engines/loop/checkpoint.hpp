@@ -1,8 +1,8 @@
 /// One file that holds a running loop to the last bit, written whole or not at all.
 ///
 /// Layout: what it holds (16 letters), version, length of the body, FNV-1a checksum of the body (three 64-bit numbers of this machine's byte
-/// order), then the body. That of a loop: the caller's text, then every array that decides how the run goes on, in the order in which it
-/// lies in memory. That of a scene that runs on YADE's own loop: what O.save wrote.
+/// order), then the body. The body of a loop: the caller's text, then every array of the complete state, in the order in which it
+/// lies in memory. The body of a scene on YADE's own loop: the bytes of O.save.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -30,7 +30,7 @@ std::string read_checkpoint(const std::string& path, Contents expected = Content
 /// The caller's text of a loop's checkpoint, without the loop. @throws as read_checkpoint
 std::string read_companion(const std::string& path);
 
-/// FNV-1a, by which a file knows its body and a scene its solids.
+/// FNV-1a, the checksum of a file's body and of a scene's solids.
 std::uint64_t checksum_of(const std::string& bytes);
 
 /// What a file says that it holds; a loop where it says nothing that is known.

@@ -80,7 +80,7 @@ TEST_F(Checkpoint, damaged_and_foreign_files_are_refused_with_the_reason)
 	loop.save(path);
 	const std::string good = contents();
 	rewrite(good.substr(0, good.size() - 5));
-	EXPECT_NE(refusal().find("cut short"), std::string::npos) << refusal();
+	EXPECT_NE(refusal().find("truncated"), std::string::npos) << refusal();
 	std::string flipped = good;
 	flipped[good.size() / 2] ^= 1;
 	rewrite(flipped);

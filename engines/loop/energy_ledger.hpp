@@ -1,6 +1,6 @@
 /// The energy ledger: where the energy of a scene is, where it came from and where it went, at the steps of the leapfrog.
 ///
-/// In space what is remembered of a contact turns with its normal. At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
+/// In space the stored vectors of a contact turn with its normal. At step n, with positions x_n and the forces there, the leapfrog's velocities v- = v_{n-1/2} and v+ = v_{n+1/2} obey exactly
 ///
 ///   K_n = sum 1/2 m v-.v+,   K_n - K_{n-1} = sum 1/2 F_{n-1}.v dt + 1/2 F_n.v dt,  v = v_{n-1/2} that of the interval between them
 ///
@@ -18,8 +18,9 @@
 ///                  grains that are wrapped, 1/2 m (v'^2 - v^2); by what a change of the flow gives all grains at once
 ///   time step      an elastic force's work in steps is not exactly its closed form, most of all in the steps in which a contact begins
 ///                  and ends; that difference, and a contact's turning between two steps, contact by contact: what leapfrog itself adds
-/// Nothing is a remainder of the whole: forces are computed anew from the motion, and `residual` is what all entries together fail to explain. It is
-/// round-off unless a force, a spring or a grain went astray; the accuracy of the time step stands in its own entry.
+/// No entry is computed as the remainder of the others: forces are computed again from the motion, and `residual` is the energy that
+/// the sum of all entries does not explain. It is round-off unless a force, a spring or a grain is wrong; the error of the time step
+/// has its own entry.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -81,7 +82,7 @@ public:
 	/// Books one step. Sorts the contacts by key, so that sums do not depend on where they lie.
 	void book(std::vector<MetContact<D>>& contacts, const LedgerMotion& motion);
 
-	/// A grain is wrapped across a sheared side and goes on as its image: what that is faster the cell has given it.
+	/// A grain is wrapped across a sheared side and continues as its image, whose higher velocity comes from the cell.
 	void see_from_image(double inverse_mass, const Vec<D>& velocity, const Vec<D>& of_image)
 	{
 		if (steps == 0) return;  // the energy that the ledger opens with is yet to come
@@ -105,7 +106,7 @@ public:
 	}
 
 private:
-	/// What the next step must know of a contact.
+	/// Data of a contact for the next step.
 	struct Past {
 		std::uint64_t key;
 		Vec<D> n;

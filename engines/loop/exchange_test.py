@@ -290,4 +290,4 @@ def test_where_a_runner_stands_one_line_says_that_interactions_are_empty(there, 
     if there:
         put(runner("look"), 3)
     grain_loop.use_grain_loop()
-    assert capsys.readouterr().err.count("O.interactions stays empty under GrainLoop") == there
+    assert capsys.readouterr().err.count("under GrainLoop O.interactions is empty") == there

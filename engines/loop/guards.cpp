@@ -43,7 +43,7 @@ void check_turning(const RigidBody<3>& body, std::size_t b)
 	const int free = body.turns[0] + body.turns[1] + body.turns[2];
 	const Vec<3>& i = body.inertia;
 	require(free != 2 || (i[0] == i[1] && i[1] == i[2]),
-		"a body whose moments of inertia differ may turn about all axes, one or none, got two in body ", b,
+		"a body with different moments of inertia must be free to turn about all axes, one or none, got two in body ", b,
 		"; block one more rotation, or none");
 }
 
@@ -206,21 +206,21 @@ void check_dimension(const Scene<2>& scene)
 	require(scene.cell.across == 1 && scene.cell.along == 0,
 		"a sheared cell of disks flows along x and is sheared across y, got the axes ", scene.cell.along, " and ",
 		scene.cell.across, "; turn the scene");
-	require(scene.bodies.empty(), "a sheared cell knows free disks alone, got ", scene.bodies.size(),
+	require(scene.bodies.empty(), "a sheared cell may hold only free disks, got ", scene.bodies.size(),
 		" bodies (clumps, solids, disks that are driven, blocked, large or watched); take them out, or use YADE's own loop");
-	require(scene.walls.empty(), "a sheared cell has no walls, got ", scene.walls.size(), "; take them out");
-	require(scene.damping == 0, "non-viscous damping knows no mean flow, got damping ", scene.damping,
+	require(scene.walls.empty(), "a sheared cell must have no walls, got ", scene.walls.size(), "; remove them");
+	require(scene.damping == 0, "non-viscous damping is not defined relative to a mean flow, got damping ", scene.damping,
 		" in a sheared cell; set it to 0, or use YADE's own loop");
 }
 void check_dimension(const Scene<3>& scene)
 {
 	require(std::visit([](const auto& law) { return laws::is_for_spheres(law); }, scene.law),
-		"the loop over spheres knows the laws ", laws::listed(laws::names_where(laws::is_for_spheres), " and "), ", got ",
+		"the loop over spheres has only the laws ", laws::listed(laws::names_where(laws::is_for_spheres), " and "), ", got ",
 		laws::name_of(scene.law), "; take one of those, or YADE's own loop");
-	require(scene.damping == 0, "the loop over spheres knows no non-viscous damping, got damping ", scene.damping,
+	require(scene.damping == 0, "the loop over spheres has no non-viscous damping, got damping ", scene.damping,
 		"; set it to 0, or use YADE's own loop");
 	require(
-		!scene.cell.sheared(), "the loop over spheres knows no sheared cell, got one that is; set across to -1, or take disks");
+		!scene.cell.sheared(), "the loop over spheres has no sheared cell, got a sheared one; set across to -1, or use disks");
 	require(scene.grains.size() < 30'000'000, "a scene may have at most 30 million spheres, got ", scene.grains.size());
 }
 
@@ -249,7 +249,7 @@ void check_scene(const Scene<D>& scene, double overlap)
 	require(!scene.grains.empty(), "a scene must have at least one grain, got none");
 	require(scene.dt > 0 && std::isfinite(scene.dt), "time step must be positive, got ", scene.dt);
 	require(scene.threads >= 1 && scene.threads <= 256, "threads must lie in 1..256, got ", scene.threads);
-	require(scene.skin >= 0, "skin must not be negative (0 lets the loop choose), got ", scene.skin);
+	require(scene.skin >= 0, "skin must not be negative (0: the loop chooses it), got ", scene.skin);
 	require(scene.spin_response > 0, "m R^2/I of the grains must be positive, got ", scene.spin_response);
 	require(scene.damping >= 0 && scene.damping < 1, "damping must lie in [0, 1), got ", scene.damping);
 	require(geometry::is_finite(scene.gravity), "gravity must be finite, got a number that is not");
@@ -261,7 +261,7 @@ void check_scene(const Scene<D>& scene, double overlap)
 	laws::require_in_range(scene.law);
 	const double critical = critical_time_step(scene, overlap);
 	require(scene.dt <= critical, "time step must not exceed the critical one of the stiffest, lightest pair, ", critical,
-		", at the overlap of ", overlap, " R that stops the run, got ", scene.dt, "; lower it or take softer grains");
+		", at the largest allowed overlap of ", overlap, " R, got ", scene.dt, "; lower it or take softer grains");
 	const double of_bodies = critical_time_step_of_bodies(scene, overlap);
 	require(scene.dt <= of_bodies,
 		"time step must not exceed the critical one of the lightest body (clump, large, watched or driven ",

@@ -127,7 +127,7 @@ TEST(Overlaps, the_step_must_bear_the_overlap_that_stops_the_run)
 	EXPECT_EQ(complaint([&] { Stepper<2> loop(s); }), "");
 	Guards<2> guards;
 	guards.largest_overlap = 0.4;
-	EXPECT_TRUE(mentions(complaint([&] { Stepper<2> loop(s, guards); }), "at the overlap of 0.4 R that stops the run"));
+	EXPECT_TRUE(mentions(complaint([&] { Stepper<2> loop(s, guards); }), "at the largest allowed overlap of 0.4 R"));
 	guards.largest_overlap = 0.01;
 	s.dt = 1.01 * shallow;
 	EXPECT_EQ(complaint([&] { Stepper<2> loop(s, guards); }), "");

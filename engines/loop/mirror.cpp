@@ -138,7 +138,7 @@ void MirrorOf<D>::step()
 	guarded([&] { stepper->step(1); });
 }
 
-/// Drives and Python move bodies by writing into YADE's: place, velocity, turn and freedoms are heard at every step.
+/// Drives and Python move bodies by writing into YADE's bodies: position, velocity, rotation and freedoms are read at every step.
 template <int D>
 void MirrorOf<D>::follow_bodies()
 {
@@ -180,7 +180,7 @@ void MirrorOf<D>::sync()
 	remember_what_is_written();
 }
 
-/// YADE counts the windings of a periodic box. No sum over syncs: results must not depend on how often somebody looks.
+/// YADE counts the windings of a periodic box. They are not summed over syncs, because results must not depend on the number of syncs.
 template <int D>
 void MirrorOf<D>::write_grain(std::size_t g)
 {

@@ -42,12 +42,12 @@ public:
 	virtual void compute_body_forces() = 0;
 	virtual void follow_bodies() = 0;
 	virtual void take_outside_forces() = 0;
-	/// O.cell as it is at the present positions; what was set for the step that comes.
+	/// O.cell at the present positions; and the values set for the next step.
 	virtual void follow_cell() = 0;
 	virtual void take_next_flow() = 0;
 	virtual void step() = 0;
 	virtual void write_bodies() = 0;
-	/// Everybody has been shown all bodies since somebody may have written into them.
+	/// All bodies have been written to YADE since other code may last have changed them.
 	virtual void close() = 0;
 	virtual bool is_open() const = 0;
 
@@ -58,7 +58,7 @@ public:
 	virtual void change_settings() = 0;
 	virtual void bring_settings_of_step() = 0;
 	virtual void bring_loads() = 0;
-	/// An axis of the cell that is left free must be longer than the scene: YADE lets grains meet across it.
+	/// A non-periodic axis of the loop must be longer in the cell than the scene: YADE finds contacts across it.
 	virtual void require_spread() const = 0;
 
 	virtual int body_index(int id) = 0;
@@ -98,7 +98,7 @@ public:
 	virtual void save(const std::string& path, const std::string& companion) = 0;
 };
 
-/// Of the scene that GrainLoop stands in, from YADE's bodies. @throws std::invalid_argument for what the loop cannot move
+/// Reads GrainLoop's scene from YADE's bodies. @throws std::invalid_argument for bodies that the loop cannot move
 std::unique_ptr<Mirror> mirror_of(GrainLoop& engine);
 /// From a checkpoint; `companion` gets the caller's text. @throws std::runtime_error as Stepper::restore
 std::unique_ptr<Mirror> mirror_from(GrainLoop& engine, const std::string& path, std::string& companion);

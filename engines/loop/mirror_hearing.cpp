@@ -1,4 +1,4 @@
-/// What others wrote into YADE's bodies and forces: heard at once, or by reading the scene anew, or refused.
+/// Handles changes by other code in YADE's bodies and forces: applied at once, or by reading the scene again, or refused.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -24,7 +24,7 @@ void require_finite(const yade::State& state, int id)
 		!state.ori.coeffs().isZero(0))
 		return;
 	throw std::runtime_error("GrainLoop: position, velocity, spin or orientation of body " + std::to_string(id) +
-							 " is not finite or no orientation; look for what writes it into O.bodies");
+							 " is not finite, or the orientation is zero; look for what writes it into O.bodies");
 }
 
 template <int D>
@@ -38,7 +38,7 @@ typename MirrorOf<D>::Written MirrorOf<D>::written_in(const yade::Body& body) co
 {
 	if (!body.state || !body.shape)
 		throw std::runtime_error(
-			"GrainLoop: body " + std::to_string(body.id) + " has lost its shape or its state; put it back, or erase the body");
+			"GrainLoop: body " + std::to_string(body.id) + " has lost its shape or its state; restore it, or erase the body");
 	const yade::State& s = *body.state;
 	Written w;
 	std::memset(&w, 0, sizeof w);  // the bytes between the numbers too: they are compared
@@ -72,7 +72,7 @@ void MirrorOf<D>::remember_what_is_written()
 	open = true;
 }
 
-/// Hears what others wrote into grains since all were last shown: a motion at once, anything else by reading the scene anew.
+/// Applies changes of grains by other code since all were last written: of a motion at once, of anything else by reading the scene again.
 template <int D>
 void MirrorOf<D>::hear_bodies()
 {
@@ -89,7 +89,7 @@ void MirrorOf<D>::hear_bodies()
 		if (now.material != then.material)
 			throw std::runtime_error(
 				"GrainLoop: body " + std::to_string(id) +
-				" was given another material, which its contacts do not follow; assign GrainLoop.friction, young, "
+				" was given another material, which does not change its contacts; assign GrainLoop.friction, young, "
 				"... if they shall change, and then call read(), or use YADE's loop");
 		const bool free = is_free(g);
 		if (free || is_member_or_body(g)) std::copy(then.place, then.place + D, now.place);
@@ -175,7 +175,7 @@ void MirrorOf<D>::require_materials() const
 		if (now.young == known.young && now.poisson == known.poisson && now.frictionAngle == known.friction_angle) continue;
 		throw std::runtime_error(
 			"GrainLoop: the constants of material " + std::to_string(now.id) + " ('" + now.label +
-			"') were changed, which its contacts do not follow; assign GrainLoop.friction, young, ... and then "
+			"') were changed, which does not change its contacts; assign GrainLoop.friction, young, ... and then "
 			"call read(), or use YADE's loop");
 	}
 }
@@ -208,7 +208,7 @@ void MirrorOf<D>::require_spread() const
 		const Real edge = scene().cell->hSize(axis, axis);
 		if (high - low <= edge) continue;
 		throw std::invalid_argument(std::string("GrainLoop: ") + (D == 2 ? "disks" : "spheres") + " reach over " +
-									std::to_string(high - low) + " m along " + "xyz"[axis] + ", where O.cell repeats after " +
+									std::to_string(high - low) + " m along " + "xyz"[axis] + ", where O.cell has the period " +
 									std::to_string(edge) +
 									" m and GrainLoop.periods is 0; give that period, or make the cell longer");
 	}
@@ -246,7 +246,7 @@ void MirrorOf<2>::refuse_off_plane(int id, const Vector3r& force, const Vector3r
 	const auto refuse = [&](unsigned free_in, Real part, const char* what) {
 		if (part == 0 || (state_of(id).blockedDOFs & free_in)) return;
 		throw std::runtime_error(
-			"GrainLoop: the " + std::string(what) + " from outside on body " + std::to_string(id) +
+			"GrainLoop: the external " + std::string(what) + " on body " + std::to_string(id) +
 			" would move it out of the plane; block its z, X and Y (blockedDOFs='zXY') or leave that part out");
 	};
 	refuse(yade::State::DOF_Z, force[2], "force");
@@ -259,7 +259,7 @@ void MirrorOf<D>::push_with(int id, const Vector3r& force, const Vector3r& torqu
 {
 	if (force.isZero(0) && torque.isZero(0)) return;
 	if (!force.allFinite() || !torque.allFinite())
-		throw std::runtime_error("GrainLoop: the force from outside on body " + std::to_string(id) +
+		throw std::runtime_error("GrainLoop: the external force on body " + std::to_string(id) +
 								 " is not finite; look for the engine or the O.forces call that adds it");
 	refuse_off_plane(id, force, torque);
 	const int g = map.grain_of_id[id];

@@ -6,7 +6,7 @@
 
 namespace graindrive::loop {
 
-/// @throws std::runtime_error naming the body whose motion, as somebody wrote it, is none
+/// @throws std::runtime_error naming the body if other code has written a motion that is not finite
 void require_finite(const yade::State& state, int id);
 
 template <int D>
@@ -78,7 +78,7 @@ private:
 	std::unique_ptr<Stepper<D>> stepper;
 	std::vector<Touch<D>> touches;
 
-	/// A grain as YADE's body shows it to everyone: its motion, and what may not change without reading the scene anew.
+	/// A grain as stored in YADE's body: its motion, and data whose change requires reading the scene again.
 	struct Written {
 		Real place[3], velocity[3], spin[3], mass, inertia[3], radius;
 		const void* material;
@@ -87,9 +87,9 @@ private:
 		bool operator==(const Written& other) const;
 	};
 	std::vector<Written> written;  // by grain, at the last sync
-	bool open = false;             // somebody may have written into bodies since then
+	bool open = false;             // other code may have written into bodies since then
 
-	/// What a body counts with in its pairs, as it was when the scene was read.
+	/// Mass and inertia of a body in its pairs, as read with the scene.
 	struct Counted {
 		Real mass, inertia[3];
 		bool held, damped;    // held: all its directions are blocked

@@ -110,7 +110,7 @@ inline Vec<3> turned_along(const Vec<3>& tangential, const Vec<3>& from, const V
 	return tangential - (geometry::dot(tangential, to) / facing) * (from + to);
 }
 
-/// What a law answers.
+/// The output of a law.
 template <int D>
 struct LawAnswer {
 	double normal;                ///< F_n [N]
@@ -129,7 +129,7 @@ LawAnswer<3> answer_of(const laws::Response<double, Vector3r, Mask>& r)
 	return { r.normal, from_law(r.tangential), from_law(r.slip), bool(r.slipping) };
 }
 
-/// What the law is told.
+/// The input of the law.
 template <int D>
 auto kinematics(
 	const Placement<D>& at, const RelativeMotion<D>& motion, double effective_radius, double effective_mass, double dt)

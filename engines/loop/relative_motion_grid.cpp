@@ -30,8 +30,8 @@ RelativeMotionGrid::RelativeMotionGrid(const State<3>& of, double until) : state
 	for (int axis = 0; axis < 3; ++axis) join_next_along(axis);
 }
 
-/// Cells are so wide that free grains that may touch lie in adjacent ones, and no wider: the more a cell spans, the more its grains
-/// have gone differently in a shear. A larger member enters all that its box meets.
+/// Cells are just so wide that free grains that may touch lie in adjacent cells: in a shear flow, displacements differ more within a
+/// wider cell. A larger member is put into all cells that its box overlaps.
 void RelativeMotionGrid::lay()
 {
 	double most_allowed = 0;

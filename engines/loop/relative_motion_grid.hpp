@@ -1,7 +1,7 @@
-/// How much nearer two spheres can have come to each other since the last search: by what spheres of one neighbourhood have gone differently.
+/// A bound for the approach of two spheres since the last search, from differences of displacements between neighbouring spheres.
 ///
 /// A pair that may touch before the next selection lies in two adjacent cells of a grid now, so the displacements since the search
-/// need comparing there alone: a bed that flows as a whole, or shears slowly, needs no new search however far it has gone.
+/// have to be compared only there: a bed that flows as a whole, or shears slowly, needs no new search however far it has moved.
 #pragma once
 #include "engines/loop/pair_geometry.hpp"
 
@@ -9,7 +9,7 @@ namespace graindrive::loop {
 
 class RelativeMotionGrid {
 public:
-	/// Lays all grains into cells, with where they may be after `horizon` [s] by the drifts of their parties.
+	/// Sorts all grains into cells, with their possible positions after `horizon` [s] from the drifts of their parties.
 	RelativeMotionGrid(const State<3>& state, double horizon);
 	/// Bound on the change of distance of any pair that may touch until then [m].
 	double largest_approach() const;
@@ -20,7 +20,7 @@ private:
 		Vec<3> low = Vec<3>::all(HUGE_VAL), high = Vec<3>::all(-HUGE_VAL);  // [m]
 		void include(const Range& other);
 	};
-	/// What grains of a cell have in common. Drifts are steady, so what two have gone differently is largest now or at the horizon.
+	/// The motion of the grains of a cell. Drifts are constant, so the difference of two displacements is largest now or at the horizon.
 	struct Motion {
 		Range now, then;
 		double allowed = 0;  // largest budget [m]

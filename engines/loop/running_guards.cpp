@@ -1,4 +1,4 @@
-/// Where grains may be, and what a guard says that trips.
+/// The bounds of grains, and the messages of the guards.
 #include "engines/loop/running_guards.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string listed(const Vec<D>& v)
 }  // namespace
 
 template <int D>
-std::string RunningGuards<D>::now() const
+std::string RunningGuards<D>::time_of_step() const
 {
 	return sentence("step ", speech.first_step + state.steps, ": ");
 }
@@ -79,7 +79,7 @@ typename RunningGuards<D>::Limit RunningGuards<D>::behind_held_grains(Side side)
 	}
 	if (last == HUGE_VAL) return {};  // a solid without end
 	return { outward_of(side) * (last + free_fall * 2 * state.largest_free_radius), last > -HUGE_VAL,
-		"three diameters behind the last grain that is held against gravity",
+		"three diameters beyond the last grain that is held against gravity",
 		"a base without gaps, or bounds if grains may fall there" };
 }
 
@@ -93,9 +93,9 @@ void RunningGuards<D>::check_box() const
 		if (!limit.is_set) continue;
 		for (std::uint32_t row = 0; row < state.n; ++row) {
 			if (!(outward * (state.rows[row].x[axis_of(Side(s))] - limit.at) > 0) || state.is_led(row)) continue;
-			throw std::runtime_error(sentence(now(), introduce(row), " has left the box: its ", "xyz"[axis_of(Side(s))],
+			throw std::runtime_error(sentence(time_of_step(), introduce(row), " has left the box: its ", "xyz"[axis_of(Side(s))],
 				outward < 0 ? " is below " : " is above ", limit.at, ", ", limit.by,
-				"; likely it was pressed or thrown through: take stiffer grains, a shorter time step, ", limit.cause));
+				"; likely it passed through other grains or a wall: use stiffer grains, a shorter time step, ", limit.cause));
 		}
 	}
 }
@@ -108,8 +108,8 @@ void RunningGuards<D>::check_finite() const
 		double sum = 0;
 		for (int k = 0; k < D; ++k) sum += row.x[k] + row.v[k];
 		if (!std::isfinite(sum + inner(row.surface, row.surface)))
-			throw std::runtime_error(sentence(
-				now(), introduce(i), " is not finite; likely the time step is too long or two grains were put into one place"));
+			throw std::runtime_error(sentence(time_of_step(), introduce(i),
+				" is not finite; likely the time step is too long, or two grains began in one place"));
 	}
 }
 
@@ -121,9 +121,9 @@ void RunningGuards<D>::check_pair(std::uint32_t i, std::uint32_t j, bool wrapped
 	Vec<D> d = b.x - a.x;
 	if (wrapped) d = state.scene.cell.nearest(d).at;
 	if (geometry::squared_norm(d) >= nearest * nearest || (state.is_led(i) && state.is_led(j))) return;
-	throw std::runtime_error(sentence(now(), introduce(i), " and ", introduce(j), " overlap by ",
+	throw std::runtime_error(sentence(time_of_step(), introduce(i), " and ", introduce(j), " overlap by ",
 		placement<D>(a, b, state.scene.cell).overlap / smaller, " of a radius, more than ", state.guards.largest_overlap,
-		"; likely grains too soft for their speed or load, a time step too long, or an overlapping start"));
+		"; likely causes: grains too soft for their speed or load, too long a time step, or an overlap at the start"));
 }
 
 template <int D>
@@ -133,9 +133,10 @@ void RunningGuards<D>::check_surfaces(const Surfaces<D>& surfaces) const
 		const std::uint32_t at = state.row_of[touch.grain];
 		const double radius = state.rows[at].radius, overlap = surfaces.placement_of(touch).overlap;
 		if (state.is_led(at) || !(overlap > state.guards.largest_overlap * radius)) continue;
-		throw std::runtime_error(sentence(now(), introduce(at), " overlaps ", surfaces.name_of_surface(touch.surface), " by ",
-			overlap / radius, " of its radius, more than ", state.guards.largest_overlap,
-			"; likely grains too soft for their speed or load, a wall too fast or light, or grains that began beyond it"));
+		throw std::runtime_error(sentence(time_of_step(), introduce(at), " overlaps ", surfaces.name_of_surface(touch.surface),
+			" by ", overlap / radius, " of its radius, more than ", state.guards.largest_overlap,
+			"; likely causes: grains too soft for their speed or load, too fast or light a wall, or grains beyond it at the "
+			"start"));
 	}
 }
 

@@ -46,7 +46,7 @@ private:
 	void check_pair(std::uint32_t a, std::uint32_t b, bool wrapped) const;
 	void check_surfaces(const Surfaces<D>& surfaces) const;
 	std::string introduce(std::uint32_t row) const;
-	std::string now() const;
+	std::string time_of_step() const;
 };
 
 }  // namespace graindrive::loop

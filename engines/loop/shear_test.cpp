@@ -340,7 +340,7 @@ TEST(Shear, what_a_sheared_cell_cannot_hold_is_refused_by_name)
 	says([](Scene<2>& s) { s.cell.across = 0, s.cell.along = 1; }, "sheared across y");
 	says([](Scene<2>& s) { s.cell.rate = NAN; }, "must be finite");
 	says([](Scene<2>& s) { s.damping = 0.2; }, "damping");
-	says([](Scene<2>& s) { s.bodies.emplace_back(); }, "free disks alone");
+	says([](Scene<2>& s) { s.bodies.emplace_back(); }, "only free disks");
 	says([](Scene<2>& s) { s.walls.emplace_back(); }, "no walls");
 	Scene<3> spheres;
 	spheres.grains.push_back({ { 1, 1, 1 }, {}, {}, 0.5, 1 });

@@ -1,4 +1,4 @@
-/// Everything that decides how a run goes on, as one value: its copies are checkpoints, trial steps, and what a run goes back to.
+/// The complete state of a run as one value: its copies are used for checkpoints, trial steps, and to return to an earlier state.
 #pragma once
 #include <limits>
 #include <vector>
@@ -92,7 +92,7 @@ struct State {
 	std::vector<Push<D>> pushes;
 	Guards<D> guards;
 
-	// What follows from the above, and is no part of a checkpoint.
+	// Derived from the above, and not part of a checkpoint.
 	std::uint32_t n_free = 0, n = 0;          ///< free grains; all grains
 	std::vector<std::uint32_t> row_of;        ///< index in Scene::grains -> row
 	std::vector<std::uint32_t> first_member;  ///< of each body, and the end

@@ -23,7 +23,7 @@ template <int D>
 class Stepper {
 public:
 	/// @throws std::invalid_argument for a scene that cannot be run: says which number, the rule and the way out
-	/// The time step must bear the overlap at which `guards` stop the run.
+	/// The time step must be stable at the largest overlap that `guards` allow.
 	explicit Stepper(const Scene<D>& scene, const Guards<D>& guards = {});
 	Stepper(const Stepper&) = delete;
 
@@ -40,9 +40,9 @@ public:
 	/// For velocities given on the step, not half a step behind: takes the first half kick (springs are left as they are).
 	void begin_on_step();
 
-	/// Writes everything that decides how the run goes on, and a text of the caller's, into one file (see checkpoint.hpp).
+	/// Writes the complete state and a text of the caller into one file (see checkpoint.hpp).
 	void save(const std::string& path, const std::string& companion = "");
-	/// A loop that goes on as the saved one would have, to the last bit, on any number of threads.
+	/// A loop that continues as the saved one would have, to the last bit, on any number of threads.
 	static std::unique_ptr<Stepper> restore(const std::string& path, int threads = 1, std::string* companion = nullptr);
 
 	long steps_done() const { return state.steps; }
@@ -70,19 +70,19 @@ public:
 	/// Appends the contacts on a body, as of the last `compute_body_forces`; of disks also as of the last step.
 	void touches_on(std::size_t body, std::vector<Touch<D>>& touches) const;
 
-	/// Forces from outside on free grains, from the next step until they are set anew; those on bodies stand in `bodies()`.
+	/// External forces on free grains, from the next step until they are set again; those on bodies are in `bodies()`.
 	void set_pushes(std::vector<Push<D>> on_grains);
 	/// Gives a grain another place, velocity and spin, between two steps.
 	void put(std::size_t index, const Grain<D>& grain);
 	/// Gives a body and its members another velocity, between two steps.
 	void set_velocity(std::size_t body, const Vec<D>& velocity, const Spin<D>& spin);
-	/// Goes on with law, friction, gravity, precision, threads and skin of `wanted`. Springs stay while the kind of law does.
+	/// Continues with law, friction, gravity, precision, threads and skin of `wanted`. Springs are kept if the kind of law does not change.
 	/// @throws std::invalid_argument as the constructor, and for another physics while energy is tracked
 	void change(const Scene<D>& wanted);
 
 	std::vector<Spring<D>> springs() const;
 	void set_springs(const std::vector<Spring<D>>& springs);  ///< before the first step
-	void forget_springs();                                    ///< all contacts begin anew
+	void forget_springs();                                    ///< all contacts restart with a zero spring
 	/// @throws std::invalid_argument where it exceeds the critical step
 	void set_time_step(double dt);
 

@@ -12,7 +12,7 @@ void Stepper<D>::set_pushes(std::vector<Push<D>> on_grains)
 {
 	for (const Push<D>& push : on_grains)
 		if (push.grain >= state.n || !state.is_free(push.grain))
-			throw std::invalid_argument(sentence("a push acts on a free grain; got grain ", push.grain));
+			throw std::invalid_argument(sentence("a push must act on a free grain, got grain ", push.grain));
 	state.pushes = std::move(on_grains);
 	if (body_forces_known) hand_outside_forces_over();
 }
@@ -25,7 +25,7 @@ void Stepper<D>::put(std::size_t index, const Grain<D>& grain)
 	row.x = grain.place, row.v = grain.velocity;
 	row.surface = grain.spin * grain.radius;
 	if (!elsewhere) return;
-	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // whoever was near is no guide any more
+	state.searched_at.assign(state.searched_at.size(), HUGE_VAL);  // earlier neighbours are no longer valid
 	surfaces.forget_list();
 	state.selection_due = moved_since_look = true;
 }
@@ -165,14 +165,15 @@ template <int D>
 void Stepper<D>::track_energy(bool on)
 {
 	if (on == bool(books)) return;
-	if (body_forces_known) throw std::runtime_error("the energy ledger opens and closes between steps, and a step is under way");
+	if (body_forces_known)
+		throw std::runtime_error("the energy ledger must be opened and closed between steps, got one in a step");
 	books.reset();
 	if (!on) return;
 	require_explicable(state.scene);
 	books = std::make_unique<Books<D>>(state, surfaces);
 }
 
-/// The state as it is between steps, springs among it.
+/// The state between steps, including springs.
 template <int D>
 State<D> Stepper<D>::snapshot()
 {
@@ -203,7 +204,7 @@ void Stepper<D>::resume()
 	budgets.find_neighbours(pairs);
 }
 
-/// A trial step with half a kick, after which everything is as it was, whatever a guard says on the way.
+/// A trial step with half a kick, after which the state is restored, also if a guard raises an error.
 template <int D>
 double Stepper<D>::kinetic_energy_on_step()
 {
@@ -228,7 +229,7 @@ double Stepper<D>::kinetic_energy_on_step()
 template <int D>
 void Stepper<D>::begin_on_step()
 {
-	if (books) throw std::runtime_error("begin on the step first, then track energy");
+	if (books) throw std::runtime_error("call begin_on_step first, then track energy");
 	half_step(0, state.scene.dt);
 }
 
@@ -271,8 +272,8 @@ std::unique_ptr<Stepper<D>> Stepper<D>::restore(const std::string& path, int thr
 	int dimensions = 0;
 	unpack(words), unpack(dimensions);
 	if (dimensions != D)
-		throw std::runtime_error(sentence("checkpoint ", path, ": holds a loop of ", dimensions, " dimensions, and one of ", D,
-			" is asked for; build the scene that it was saved from"));
+		throw std::runtime_error(sentence("checkpoint ", path, ": holds a loop of ", dimensions, " dimensions, but one of ", D,
+			" is needed; build the scene that it was saved from"));
 	if (companion) *companion = words;
 	State<D> saved;
 	visit_state(unpack, saved);

@@ -1,4 +1,4 @@
-/// Search and selection: when they are due, and what is done once for all dimensions.
+/// Search and selection of pairs: when they are due, and the parts common to all dimensions.
 #include <algorithm>
 #include <cmath>
 

@@ -58,7 +58,7 @@ void Stepper<D>::spins(double* to) const
 	}
 }
 
-/// What a law remembers as a force is what it holds to Coulomb's bound: a dashpot comes on top of it.
+/// Laws that store a force limit this force by Coulomb's bound; the dashpot's force is added to it.
 template <int D>
 bool Stepper<D>::slips(const ForceParts<D>& force, const Tangent<D>& remembered) const
 {
@@ -138,7 +138,7 @@ typename Stepper<D>::Sight Stepper<D>::look_between_steps()
 	const bool was_under_way = body_forces_known;
 	compute_body_forces();
 	const Sight sight{ present_contacts(), surface_contacts() };
-	if (!was_under_way) take_back_body_forces();  // so that the loop can be saved and the step begins anew
+	if (!was_under_way) take_back_body_forces();  // so that the loop can be saved and the step can start again
 	return sight;
 }
 
@@ -192,7 +192,7 @@ void Stepper<2>::touches_on(std::size_t b, std::vector<Touch<2>>& touches) const
 template <>
 void Stepper<3>::touches_on(std::size_t b, std::vector<Touch<3>>& touches) const
 {
-	if (!body_forces_known) throw std::logic_error("contacts on a body of spheres are known while a step is under way");
+	if (!body_forces_known) throw std::logic_error("contacts on a body of spheres are known only during a step");
 	const std::uint32_t first = state.n_free + state.first_member[b], end = state.n_free + state.first_member[b + 1];
 	const auto add = [&](std::uint32_t at, const Contact<3>& c, double side) {
 		const Vec<3> n = side * c.n;

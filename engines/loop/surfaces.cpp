@@ -164,7 +164,7 @@ void Surfaces<D>::take_back()
 	for (SurfaceTouch<D>& touch : state.touches) touch.slip = touch.slip_before, touch.spring_normal = touch.spring_normal_before;
 }
 
-/// Free grains have been moved by then: what is asked of them is what `compute_forces` has kept.
+/// Free grains have moved by then, so their data are those stored by `compute_forces`.
 template <int D>
 void Surfaces<D>::add_to_bodies()
 {

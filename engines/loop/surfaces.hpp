@@ -1,8 +1,8 @@
-/// Flat walls and solids in a step: grains meet them by distance and normal, with the law and the history of every other contact.
+/// Contacts of grains with flat walls and solids, from distance and normal, with the same law and history as all other contacts.
 ///
-/// A grain meets a surface as a plane: R_eff = R, m_eff = m with a surface that does not respond. Few grains are at a surface, so one
-/// thread does it: forces before anything moves, given to free grains after the sweep. On a grain a force acts at its own radius, on a
-/// solid at the middle of the overlap, as YADE's contact point.
+/// A surface counts as a plane: R_eff = R, and m_eff = m with a surface that does not respond. Few grains are at a surface, so one
+/// thread does it: forces are computed before the grains move, and applied to free grains after the sweep. On a grain a force acts at
+/// its own radius, on a solid at the middle of the overlap, like YADE's contact point.
 #pragma once
 #include "engines/loop/views.hpp"
 
@@ -14,20 +14,20 @@ public:
 	Surfaces(State<D>& of, const StepMotion<D>& in) : state(of), motion(in) {}
 
 	bool any() const { return !state.scene.walls.empty() || !state.scene.solids.empty(); }
-	/// The list of near grains is made anew at the next step.
+	/// The list of near grains is made again at the next step.
 	void forget_list() { largest_way = HUGE_VAL; }
-	/// True if a solid is elsewhere than the last step left it; the list is then made anew.
+	/// True if a solid was moved since the last step; the list is then made again.
 	bool moved_by_hand();
-	/// Where solids are after a step.
+	/// Stores the positions of solids after a step.
 	void remember_places();
-	/// Tells that pairs are about to be selected anew: no grain has gone farther since the last time [m].
+	/// Called before pairs are selected again; `farthest` is the largest distance that a grain has moved since the last time [m].
 	void note_selection(double farthest) { largest_way += farthest; }
-	/// Lists grains near surfaces anew once something may have come from beyond the list to a surface; until pairs are selected anew no
-	/// grain goes farther than `to_come` [m].
+	/// Lists grains near surfaces again if a grain outside the list may have reached a surface; until pairs are selected again no grain
+	/// moves farther than `to_come` [m].
 	void list(double to_come);
 	void compute_forces();
 	void take_back();
-	/// To bodies: what surfaces do to their members, and what grains do to their surfaces.
+	/// Adds to bodies the forces of surfaces on their members, and the forces of grains on their surfaces.
 	void add_to_bodies();
 	/// kick(row, force, torque over radius) for each free grain that touches.
 	template <class Kick>

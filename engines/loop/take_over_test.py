@@ -119,7 +119,7 @@ def test_an_axis_left_free_where_disks_reach_across_it_is_refused():
     across_y()
     grain_loop.use_grain_loop(periods=(5, 0))
     O.bodies[0].state.pos = (2, -0.3, 0)
-    with pytest.raises(ValueError, match="along y, where O.cell repeats after 5"):
+    with pytest.raises(ValueError, match="along y, where O.cell has the period 5"):
         O.engines[-1]()
 
 
@@ -175,7 +175,7 @@ def test_walls_of_grain_loop_keep_a_scene_from_going_back():
     loop = grain_loop.use_grain_loop()
     loop.setWall("y_low", position=-3)
     disks.run(1)
-    with pytest.raises(UsageError, match="no flat walls"):
+    with pytest.raises(UsageError, match="does not have GrainLoop's flat walls"):
         grain_loop.use_yade_loop()
 
 

@@ -1,4 +1,4 @@
-/// Threads wait by looking for a short while, then by sleeping: quick on a free machine, polite on a crowded one.
+/// Threads wait by polling for a short time, then by sleeping: this is fast on a free machine and frees cores on a busy one.
 #include "engines/loop/thread_team.hpp"
 
 #include <chrono>
@@ -8,9 +8,9 @@ namespace graindrive::loop {
 void Epoch::advance()
 {
 	++count;
-	if (sleepers == 0) return;  // whoever counts itself among them from now on sees the new count
+	if (sleepers == 0) return;  // a thread that registers as a sleeper from now on sees the new count
 	{
-		const std::lock_guard<std::mutex> lock(mutex);  // whoever has seen the old one under the lock is asleep
+		const std::lock_guard<std::mutex> lock(mutex);  // a thread that has seen the old count under the lock is asleep
 	}
 	advanced.notify_all();
 }
@@ -27,7 +27,7 @@ void Epoch::wait_past(unsigned seen)
 bool Epoch::seen_while_looking(unsigned seen) const
 {
 	using Clock = std::chrono::steady_clock;
-	constexpr auto patience = std::chrono::microseconds(50);  // to fall asleep and be woken takes as long
+	constexpr auto patience = std::chrono::microseconds(50);  // falling asleep and waking up takes as long
 	constexpr int looks_at_once = 32;                         // the clock costs as much as a look
 	for (const auto end = Clock::now() + patience; Clock::now() < end;)
 		for (int looks = 0; looks < looks_at_once; ++looks) {

@@ -1,7 +1,7 @@
-/// Flat walls: what one is, and how it answers to what it is told.
+/// Flat walls: their data, and their motion under a velocity or a pressure.
 ///
-/// A wall lies across one axis and bounds the grains on one side. Grains meet it as they meet a frozen grain of infinite radius and
-/// mass: R_eff = R, m_eff = m, with the law and the history of every other contact.
+/// A wall is normal to one axis and bounds the grains on one side. In contacts it counts as a frozen grain of infinite radius and
+/// mass: R_eff = R, m_eff = m, with the same law and history as all other contacts.
 #pragma once
 #include <algorithm>
 #include <cstdint>

@@ -61,14 +61,14 @@ void check_wall(const Scene<D>& scene, const Wall<D>& wall)
 		extent(scene, wall.axis()));
 	const Wall<D>* facing = opposite(scene, wall);
 	require_of(!facing || (facing->position - wall.position) * wall.outward() < 0, wall,
-		"must lie on its side of the one that faces it, at which position [m]", wall.position);
+		"must lie on its own side of the opposite wall; position [m]", wall.position);
 	if (!wall.pressed) return;
 	require_of(std::isfinite(wall.pressure), wall, sentence("pressure must be finite ", unit), wall.pressure);
 	require_of(wall.mass > 0 && std::isfinite(wall.mass), wall, "a wall under pressure needs a positive mass [kg]", wall.mass);
 	require_of(wall.damping >= 0, wall, "damping must not be negative [kg/s]", wall.damping);
 	require_of(wall.speed_limit > 0, wall, "speedLimit must be positive [m/s]", wall.speed_limit);
 	require_of(wall_extent(scene, wall) > 0, wall,
-		sentence("a pressure needs ", what, " that it acts on: a periodic box or two walls along the wall; ",
+		sentence("a pressure needs ", what, " to act on: a periodic box or two walls along the wall; ",
 			D == 2 ? "length [m]" : "area [m^2]"),
 		wall_extent(scene, wall));
 }
@@ -88,7 +88,7 @@ geometry::Bounds<D> turned_any_way(geometry::Bounds<D> box)
 	return box;
 }
 
-/// A grain meets the image of a solid that is nearest to its middle, so no other image may reach it.
+/// Only the image of a solid that is nearest to a grain's centre counts, so no other image may touch the grain.
 template <int D>
 void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 {
@@ -96,9 +96,8 @@ void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 	for (const Grain<D>& g : scene.grains)
 		if (g.body != solid.body) largest = std::max(largest, g.radius);
 	if (largest > solid.shape->largest_sphere())
-		throw std::invalid_argument(
-			sentence("the solid of body ", solid.body, " knows its distance for grains up to a radius of ",
-				solid.shape->largest_sphere(), " m, got one of ", largest, "; sample it on a grid that reaches farther out"));
+		throw std::invalid_argument(sentence("the solid of body ", solid.body, " is sampled only for grains up to a radius of ",
+			solid.shape->largest_sphere(), " m, got one of ", largest, "; sample it on a grid that reaches farther out"));
 	const RigidBody<D>& body = scene.bodies[solid.body];
 	geometry::Bounds<D> box = body.bounds(solid.shape->bounds());
 	if (length(body.spin) > 0 || body.turns_somewhere()) box = turned_any_way(box);
@@ -107,8 +106,8 @@ void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 		const double wide = box.high[k] - box.low[k];
 		if (std::isinf(wide) || wide + 2 * largest <= scene.cell.length(k)) continue;
 		throw std::invalid_argument(sentence("the solid of body ", solid.body, " is ", wide, " m long along ", "xyz"[k],
-			"; with a grain of radius ", largest, " on both sides it must fit into the period of ", scene.cell.length(k),
-			" m; lengthen the period, or give a solid without end along that axis"));
+			"; together with a grain of radius ", largest, " on both sides it must fit into the period of ", scene.cell.length(k),
+			" m; lengthen the period, or give a solid that is endless along that axis"));
 	}
 }
 

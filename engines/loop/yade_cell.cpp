@@ -38,7 +38,7 @@ void require_flow(const yade::Cell& cell, int dimensions)
 	for (const Matrix* gradient : { &cell.velGrad, &cell.nextVelGrad })
 		if (!is_flow(*gradient, false))
 			throw std::invalid_argument(
-				"GrainLoop: O.cell.velGrad deforms the cell in a way that GrainLoop does not follow; only "
+				"GrainLoop: O.cell.velGrad deforms the cell in a way that GrainLoop does not support; only "
 				"velGrad[0][1] (shear) and velGrad[1][1] (height) may differ from 0, got " +
 				words(*gradient) + "; set the others to zero, or use YADE's loop");
 	if (!deforms(cell)) return;
@@ -47,12 +47,12 @@ void require_flow(const yade::Cell& cell, int dimensions)
 			cell.velGrad.isZero(0) && cell.nextVelGrad.isZero(0)
 				? "GrainLoop: O.cell is tilted (its hSize has parts off the diagonal), which spheres in space "
 				  "cannot have here: O.cell.setBox(x, y, z), or use YADE's loop"
-				: "GrainLoop: O.cell.velGrad deforms the cell, which GrainLoop does with disks alone; set it "
+				: "GrainLoop: O.cell.velGrad deforms the cell, which GrainLoop supports only for disks; set it "
 				  "to zero, or use YADE's loop");
 	if (cell.homoDeform != 1)
 		throw std::invalid_argument("GrainLoop: O.cell.homoDeform must be 1 in a cell that deforms, got " +
 									std::to_string(cell.homoDeform) +
-									"; 0 gives images no velocity, and 2 adds velGrad v dt to velocities, which no force does");
+									"; 0 gives images no velocity, and 2 adds velGrad v dt to velocities without a force");
 }
 
 void read_flow(const yade::Cell& yade_cell, Cell<2>& cell)

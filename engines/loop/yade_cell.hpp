@@ -18,7 +18,7 @@ void require_flow(const yade::Cell& cell, int dimensions);
 /// Offset, height and velocity of the images at the present positions, for a cell that deforms.
 void read_flow(const yade::Cell& yade_cell, Cell<2>& cell);
 
-/// The flow of the step that comes, after what was set for it has been taken, as NewtonIntegrator does.
+/// The flow of the next step, after the values set for it have been applied, as in NewtonIntegrator.
 Flow<2> take_next_flow(yade::Cell& cell);
 
 }  // namespace graindrive::loop

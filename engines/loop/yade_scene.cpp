@@ -86,7 +86,7 @@ void follow_orientation(const yade::State& state, const YadeBodies::Turned& turn
 	const Quaternionr turn = state.ori * shown.conjugate();
 	if (std::hypot(turn.x(), turn.y()) > 1e-9)
 		throw std::runtime_error("GrainLoop: body " + std::to_string(id) +
-								 " was turned out of the plane; GrainLoop turns bodies about z alone with dimensions=2");
+								 " was turned out of the plane; with dimensions=2 GrainLoop turns bodies only about z");
 	body.turn.angle += 2 * std::atan2(turn.z() * (turn.w() < 0 ? -1 : 1), std::abs(turn.w()));
 }
 
@@ -121,7 +121,7 @@ void write_state(const RigidBody<D>& body, const YadeBodies::Turned& turned, Sta
 
 namespace {
 
-/// One plane and one ratio m R^2/I for all free grains: what the loop's equations of motion take for granted.
+/// Requires one plane and one ratio m R^2/I for all free grains, as the loop's equations of motion assume.
 template <int D>
 void require_alike(const yade::BodyContainer& bodies, const YadeBodies& map, Scene<D>& scene)
 {
@@ -132,21 +132,22 @@ void require_alike(const yade::BodyContainer& bodies, const YadeBodies& map, Sce
 		const State& state = *bodies[map.grain_id[g]]->state;
 		if (g == 0) z = state.pos[2];
 		if (D == 2 && std::abs(state.pos[2] - z) > 1e-9 * scene.grains[g].radius)
-			throw std::invalid_argument("GrainLoop moves disks in one plane z = const; " + name + " lies in another than body " +
-										std::to_string(map.grain_id[0]) + "; set GrainLoop.dimensions=3 for spheres in space");
+			throw std::invalid_argument("GrainLoop moves disks in one plane z = const; " + name +
+										" lies in a different one from body " + std::to_string(map.grain_id[0]) +
+										"; set GrainLoop.dimensions=3 for spheres in space");
 		if (scene.grains[g].body != free_grain) continue;
 		const Real ratio = state.mass * scene.grains[g].radius * scene.grains[g].radius / state.inertia[2];
 		if (!(ratio > 0) || !std::isfinite(ratio))
 			throw std::invalid_argument("GrainLoop: mass and inertia of " + name + " must be positive; a " +
 										(D == 2 ? "disk has m R^2/2 about z" : "sphere has 2/5 m R^2 about each axis"));
 		if (D == 3 && (state.inertia[0] != state.inertia[2] || state.inertia[1] != state.inertia[2]))
-			throw std::invalid_argument("GrainLoop: a free sphere has one moment of inertia about all axes; those of " + name +
-										" differ: set state.inertia to 2/5 m R^2");
+			throw std::invalid_argument("GrainLoop: a free sphere must have one moment of inertia about all axes; those of " +
+										name + " differ: set state.inertia to 2/5 m R^2");
 		if (first) scene.spin_response = ratio;
 		first = false;
 		if (std::abs(ratio - scene.spin_response) > 1e-6 * scene.spin_response)
 			throw std::invalid_argument(
-				"GrainLoop: free grains must share one m R^2/I (2 for disks, 2.5 for spheres); that of " + name + " differs");
+				"GrainLoop: free grains must have the same m R^2/I (2 for disks, 2.5 for spheres); " + name + " differs");
 	}
 }
 
@@ -159,10 +160,10 @@ void require_one_crowd(const yade::BodyContainer& bodies)
 	for (auto one = first_with.begin(); one != first_with.end(); ++one)
 		for (auto other = one; other != first_with.end(); ++other)
 			if (!(one->first & other->first))
-				throw std::invalid_argument("GrainLoop lets all grains meet, but the masks of bodies " +
-											std::to_string(one->second) + " and " + std::to_string(other->second) + ", " +
-											std::to_string(one->first) + " and " + std::to_string(other->first) +
-											", share no bit, so YADE's would not; give them one, or use YADE's loop");
+				throw std::invalid_argument(
+					"GrainLoop lets all grains have contacts, but the masks of bodies " + std::to_string(one->second) + " and " +
+					std::to_string(other->second) + ", " + std::to_string(one->first) + " and " + std::to_string(other->first) +
+					", share no bit, so on YADE's loop they have none; give them one, or use YADE's loop");
 }
 
 /// What YADE's collider and integrator heed and the loop does not.

@@ -10,7 +10,7 @@ namespace graindrive::loop {
 /// The bodies of YADE in the loop's order, and who they are there.
 struct YadeBodies {
 	std::vector<int> grain_id;     ///< YADE's id of each grain
-	std::vector<int> grain_of_id;  ///< and back; -1 for what is no grain
+	std::vector<int> grain_of_id;  ///< and back; -1 for bodies that are no grains
 	std::vector<int>
 		body_id;  ///< YADE's id of each rigid body: a clump, a solid, or a grain that is driven, held or large; -1 for the frozen
 	std::vector<int> body_of_id;   ///< and back; -1 for others

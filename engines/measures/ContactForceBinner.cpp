@@ -6,24 +6,21 @@
 namespace graindrive {
 
 const char* const ContactForceBinner::documentation =
-	"Forces of the grains on one body or clump, by the angle of the contact point from its centre.\n\n"
-	"Per bin: normal force (positive when it pushes inwards) [N], tangential force (positive counter-clockwise) [N], contacts,\n"
-	"slipping contacts, force vector [N]; for the whole body: force, torque, contacts. Each with mean and variance over the\n"
-	"samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64 points, 8 degrees\n"
-	"(Guillard, Forterre, Pouliquen 2014, Eq. A4). The bins' forces sum to the total force to round-off. A clump's contacts are\n"
-	"its members'.\n\n"
-	"In three dimensions planeNormal is the axis of the angle, that of a cylinder, and counter-clockwise is about it: for the "
-	"angle\n"
-	"from x up to z take planeNormal=(0, -1, 0). Levers and forces are projected on the plane across the axis: an angle is that "
-	"of\n"
-	"the contact point about the axis, wherever along it; a normal force counts with its part in the plane, a tangential force\n"
-	"with its part in the plane and across the normal. What a force has along the axis is in axialForce, and forceVectors hold "
-	"all\n"
-	"of it: normal and tangential stress of a cylinder of radius R and length L (Guillard et al.) are normalForce and\n"
-	"tangentialForce over 2 pi R L/bins. A contact on the axis itself has no angle and counts at 0.\n\n"
-	"Place it after the contacts and before the integrator. Misleads where contacts are few: a bin's mean is over "
-	"all\n"
-	"samples, empty ones included. Raises ValueError for a count, width or interval out of range.";
+	"Forces of the grains on one body or clump, by the angle of the contact point as seen from the body's centre.\n\n"
+	"Per bin: normal force (positive when it pushes inwards) [N], tangential force (positive counter-clockwise) [N],\n"
+	"contacts, slipping contacts, force vector [N]; for the whole body: force, torque, contacts. Each has mean and\n"
+	"variance over the samples. kernel='bins': 24 bins of 15 degrees (Kumar, Dhiman, Reddy 2019). kernel='gaussian': 64\n"
+	"points, 8 degrees (Guillard, Forterre, Pouliquen 2014, Eq. A4). The sum of the bins' forces equals the total force to\n"
+	"round-off. The contacts of a clump are those of its members.\n\n"
+	"In three dimensions planeNormal is the axis of the angle (for a cylinder, its axis), and counter-clockwise refers to\n"
+	"it: for the angle from x up to z use planeNormal=(0, -1, 0). Levers and forces are projected on the plane normal to\n"
+	"the axis. The angle is that of the contact point about the axis, at any position along the axis; of a normal force\n"
+	"only the part in the plane counts, of a tangential force only the part in the plane and perpendicular to the normal.\n"
+	"Force parts along the axis are in axialForce; forceVectors hold the whole force. Normal and tangential stress of a\n"
+	"cylinder of radius R and length L (Guillard et al.) are normalForce and tangentialForce over 2 pi R L/bins. A contact\n"
+	"on the axis itself has no angle and counts at angle 0.\n\n"
+	"Place it after the contacts and before the integrator. Results mislead if contacts are few: a bin's mean is over all\n"
+	"samples, including empty ones. Raises ValueError for a count, width or interval out of range.";
 
 void ContactForceBinner::check() const
 {
@@ -32,7 +29,7 @@ void ContactForceBinner::check() const
 	require(count >= 0 && count <= 3600, "ContactForceBinner.count must lie in 0..3600", count);
 	require(width > 0 && width <= pi / 2, "ContactForceBinner.width must lie in (0, pi/2] rad", width);
 	require(kernel == "bins" || width >= 2 * pi / bin_count(),
-		"ContactForceBinner.width must be at least the spacing of the points, or their weights do not sum to 1; take more points "
+		"ContactForceBinner.width must be at least the spacing of the points, or their weights do not sum to 1; use more points "
 		"or a wider Gaussian",
 		width);
 	require(every >= 1, "ContactForceBinner.every must be at least 1", every);

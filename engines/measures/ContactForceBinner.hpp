@@ -26,15 +26,15 @@ public:
 		visit("count", &Self::count, "number of bins or points; 0: 24 bins, 64 points");
 		visit("width", &Self::width, "standard deviation of the Gaussian [rad]; default 8 degrees");
 		visit("reference", &Self::reference, "angle 0 is along 'direction' ('fixed') or along the body's velocity ('motion')");
-		visit("direction", &Self::direction, "angle 0 with reference='fixed', and before the body moves");
+		visit("direction", &Self::direction, "direction of angle 0 with reference='fixed', and before the body moves");
 		visit("planeNormal", &Self::planeNormal,
 			"axis of the angle, counter-clockwise about it: z in 2D, the cylinder's axis in 3D");
-		visit("every", &Self::every, "sample every so many steps");
+		visit("every", &Self::every, "number of steps between two samples");
 		visit("samples", &Self::samples, "number of samples so far");
 		visit("meanData", &Self::meanData, "running means, for save and load");
 		visit("squaresData", &Self::squaresData, "running sums of squared deviations, for save and load");
 		visit("sampleData", &Self::sample_, "the last sample, for save and load");
-		visit("zeroDirection", &Self::last_direction_, "direction that angle 0 had last; 0 before the first sample");
+		visit("zeroDirection", &Self::last_direction_, "direction of angle 0 at the last sample; 0 before the first one");
 	}
 	void check() const;
 	void callPostLoad() override;

@@ -6,31 +6,29 @@
 namespace graindrive {
 
 const char* const FieldAverager::documentation =
-	"Area or solid fraction, velocity, granular temperature, density and stress on a grid, averaged while the scene runs.\n\n"
-	"kernel='diskBin': exact area of grain and bin in common, velocities with rotation, one velocity for each grain in each\n"
-	"bin: the mean over the common area (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian': exp(-r^2/w^2), cut at\n"
-	"`cutoff` w and normalised there (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001). kernel='sphere': averages in\n"
-	"spheres, in the plane disks, of radius `width` (Guillard, Forterre, Pouliquen 2014, Eqs A2, A3). Contact stress by the "
-	"exact\n"
-	"integral of the kernel along the branch vector, kinetic stress by the fluctuations about the mean over all samples; both\n"
-	"positive in compression, pressure = tr/dimensions.\n\n"
-	"dimensions=2: disks, which are free in x, y and their rotation about z; areaFraction, density [kg/m^2], stress [N/m].\n"
-	"dimensions=3: spheres, which are free in all six; solidFraction, density [kg/m^3], stress [N/m^2]. Grains belong to no "
-	"clump\n"
-	"and are not `body`. All others (walls, driven disks, beads of an intruder) bound the grains: they have no part in area\n"
-	"fraction, velocity and kinetic stress, and their contacts count from the grain's centre to the contact point (Weinhart,\n"
-	"Thornton, Luding, Bokhove 2012, after Goldhirsch 2010).\n\n"
-	"averageAlong='y', in three dimensions: points in x and z, fields averaged over y, with the kernel's integral over y in "
-	"closed\n"
-	"form. A window as long as the period along y gives the mean of the fields in space over the period. In another window "
-	"count\n"
-	"the grains whose centres, and the parts of branch vectors that, lie in it; 'low' and 'high' are best the walls there.\n\n"
-	"Arrays have the shape (phases, ny, nx), in three dimensions (phases, nz, ny, nx) without the axis averaged over; (..., D) "
-	"for\n"
-	"vectors, (..., D, D) for stress[a, b]: force along a, branch along b; D = dimensions, also where an axis is averaged over.\n"
-	"A sample at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the contacts and before\n"
-	"drives and the integrator. Changing what decides the fields begins anew. Misleads where few grains pass: velocity is a\n"
-	"mean over grains, not over samples. Raises ValueError for a window, spacing, kernel or number out of range.";
+	"Area or solid fraction, velocity, granular temperature, density and stress on a grid, averaged during the run.\n\n"
+	"kernel='diskBin': exact area of overlap between grain and bin, velocities with rotation; each grain has one velocity\n"
+	"in each bin, the mean over the area of overlap (Kumar, Dhiman, Reddy 2019, Eqs A1-A7). kernel='gaussian':\n"
+	"exp(-r^2/w^2), cut off at `cutoff` w and normalised (Tripura et al., Eqs 3.1-3.5; Glasser, Goldhirsch 2001).\n"
+	"kernel='sphere': averages in spheres (in two dimensions in disks) of radius `width` (Guillard, Forterre, Pouliquen\n"
+	"2014, Eqs A2, A3). Contact stress comes from the exact integral of the kernel along the branch vector, kinetic stress\n"
+	"from the fluctuations about the mean over all samples; both are positive in compression, and pressure =\n"
+	"tr/dimensions.\n\n"
+	"dimensions=2: disks, which are free in x, y and in their rotation about z; areaFraction, density [kg/m^2], stress\n"
+	"[N/m]. dimensions=3: spheres, which are free in all six degrees; solidFraction, density [kg/m^3], stress [N/m^2]. A\n"
+	"grain belongs to no clump and is not `body`. All other bodies (walls, driven disks, beads of an intruder) are\n"
+	"boundaries: they do not contribute to area fraction, velocity and kinetic stress, and their contacts count from the\n"
+	"grain's centre to the contact point (Weinhart, Thornton, Luding, Bokhove 2012, after Goldhirsch 2010).\n\n"
+	"averageAlong='y', in three dimensions: grid points in x and z, fields averaged over y, with the kernel's integral\n"
+	"over y in closed form. If the window is as long as the period along y, the result is the mean of the\n"
+	"three-dimensional fields over the period. In any other window only grains whose centres lie in it count, and only the\n"
+	"parts of branch vectors that lie in it; it is then best to place 'low' and 'high' at the walls.\n\n"
+	"Arrays have the shape (phases, ny, nx), in three dimensions (phases, nz, ny, nx) without the axis averaged over;\n"
+	"(..., D) for vectors, (..., D, D) for stress[a, b]: force along a, branch along b; D = dimensions, also if an axis is\n"
+	"averaged over. A sample at time t belongs to phase floor(phases frac((t - phaseStart)/period)). Place it after the\n"
+	"contacts and before drives and the integrator. Changing a setting that affects the fields clears all samples. Results\n"
+	"mislead where few grains pass: velocity is a mean over grains, not over samples. Raises ValueError for a window,\n"
+	"spacing, kernel or number out of range.";
 
 namespace {
 
@@ -53,10 +51,10 @@ void FieldAverager::check() const
 	require(phases >= 1 && phases <= 10000, "FieldAverager.phases must lie in 1..10000", phases);
 	require(std::isfinite(period) && period > 0, "FieldAverager.period must be positive and finite", period);
 	require(std::isfinite(phaseStart), "FieldAverager.phaseStart must be finite", phaseStart);
-	require(!relative || body >= 0, "FieldAverager.relative needs a body to be relative to; FieldAverager.body", body);
+	require(!relative || body >= 0, "FieldAverager.relative needs a body; FieldAverager.body", body);
 	const Real numbers = Real(phases) * points(0) * points(1) * points(2) * numbers_at_a_point();
 	require(numbers <= most_numbers,
-		"FieldAverager: phases, bins and what is summed (5 numbers, 14 with stress; in three dimensions 6 and 24) must make at "
+		"FieldAverager: phases times bins times summed numbers (5, 14 with stress; in three dimensions 6 and 24) must be at "
 		"most "
 		"2e8 numbers; take larger bins",
 		numbers);
@@ -90,7 +88,7 @@ void FieldAverager::check_kernel() const
 	require(kernel == "diskBin" || kernel == "gaussian" || kernel == "sphere",
 		"FieldAverager.kernel must be 'diskBin', 'gaussian' or 'sphere'", kernel);
 	require(kernel != "diskBin" || dimensions == 2,
-		"FieldAverager.kernel='diskBin' shares out areas of disks and needs dimensions=2; take 'gaussian' or 'sphere' for "
+		"FieldAverager.kernel='diskBin' uses areas of disks and needs dimensions=2; take 'gaussian' or 'sphere' for "
 		"spheres; "
 		"FieldAverager.dimensions",
 		dimensions);
@@ -101,7 +99,7 @@ void FieldAverager::check_kernel() const
 	const Real reach = kernel == "gaussian" ? width * cutoff : width, diagonal = std::sqrt(square ? 2.0 : 3.0);
 	require(reach >= spacing * diagonal / 2,
 		(std::string(
-			 "FieldAverager: a kernel must reach a point of the grid from anywhere; width, times cutoff for the gaussian, must "
+			 "FieldAverager: a kernel must reach a grid point from any position; width, times cutoff for the gaussian, must "
 			 "be at least ") +
 			(square ? "0.71" : "0.87") + " spacing; take a wider kernel or a smaller spacing; reach")
 			.c_str(),
@@ -120,7 +118,7 @@ void FieldAverager::clear()
 	averagedAs = description();
 }
 
-/// All that decides what a sum means; a fixed origin may be moved while it averages, as a body moves.
+/// All settings that affect the sums; a fixed origin may be moved during the average, as a body moves.
 std::string FieldAverager::description() const
 {
 	std::ostringstream words;
@@ -173,7 +171,7 @@ void FieldAverager::action()
 	if (!sums_fit()) clear();
 	source_.of(scene).look(view_, stress);
 	require(!view_.sheared,
-		"FieldAverager knows no images that are sheared: average with ShearDrive, or in a box; O.cell.hSize[0][1]",
+		"FieldAverager does not support a sheared cell; use ShearDrive's averages, or a box; O.cell.hSize[0][1]",
 		scene->cell->hSize(0, 1));
 	const Frame now = frame();
 	leave_out_what_is_no_grain();
@@ -204,7 +202,7 @@ FieldAverager::Frame FieldAverager::frame()
 	return now;
 }
 
-/// A view calls free what is free in the plane; in space a grain must be free along z and about x and y as well.
+/// A view's free grains are free in the plane; in space a grain must also be free along z and about x and y.
 void FieldAverager::leave_out_what_is_no_grain()
 {
 	constexpr unsigned out_of_plane = yade::State::DOF_Z | yade::State::DOF_RX | yade::State::DOF_RY;

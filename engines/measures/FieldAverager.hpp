@@ -16,23 +16,23 @@ public:
 	{
 		using Self = FieldAverager;
 		visit("body", &Self::body, "id of the body or clump whose centre is the window's origin; -1: the fixed point `origin`");
-		visit("origin", &Self::origin, "origin of the window where there is no body [m]; may be moved while it averages");
-		visit("low", &Self::low, "lowest corner of the window from its origin [m]; z counts in three dimensions only");
-		visit("high", &Self::high, "highest corner of the window from its origin [m]; z counts in three dimensions only");
-		visit("spacing", &Self::spacing, "edge of the bins, squares or cubes, and distance of the points in their middles [m]");
+		visit("origin", &Self::origin, "origin of the window if body is -1 [m]; may be moved during the average");
+		visit("low", &Self::low, "lowest corner of the window, relative to its origin [m]; z is used only in three dimensions");
+		visit("high", &Self::high, "highest corner of the window, relative to its origin [m]; z only in three dimensions");
+		visit("spacing", &Self::spacing, "side of the bins, squares or cubes, and distance between their middles [m]");
 		visit("kernel", &Self::kernel, "'diskBin' (in the plane only), 'gaussian' or 'sphere'");
 		visit("width", &Self::width,
-			"w of the Gaussian, or the sphere's radius [m], wide enough to reach a grid point from anywhere; 'diskBin' has none");
-		visit("cutoff", &Self::cutoff, "where the Gaussian ends [w]");
-		visit("every", &Self::every, "sample every so many steps");
-		visit("relative", &Self::relative, "velocities relative to the body's velocity (without its spin)");
-		visit("phases", &Self::phases, "number of parts of a period that are averaged apart");
+			"w of the Gaussian, or the sphere's radius [m]; it must reach a grid point from any position; 'diskBin' has none");
+		visit("cutoff", &Self::cutoff, "distance at which the Gaussian is cut off [w]");
+		visit("every", &Self::every, "number of steps between two samples");
+		visit("relative", &Self::relative, "true: velocities are relative to the body's velocity (without its spin)");
+		visit("phases", &Self::phases, "number of parts of a period that are averaged separately");
 		visit("period", &Self::period, "period of the phases [s]");
 		visit("phaseStart", &Self::phaseStart, "time at which phase 0 begins [s]");
 		visit("stress", &Self::stress, "average stress and pressure too");
 		visit("samplesData", &Self::samplesData, "samples by phase, for save and load");
 		visit("sumsData", &Self::sumsData, "running sums, for save and load");
-		visit("averagedAs", &Self::averagedAs, "the settings that the sums were made with, for save and load");
+		visit("averagedAs", &Self::averagedAs, "settings of the sums, for save and load");
 		visit("dimensions", &Self::dimensions, "2: disks in the plane of x and y; 3: spheres");
 		visit("averageAlong", &Self::averageAlong,
 			"'x', 'y' or 'z', in three dimensions: one mean over the window's whole length along that axis in place of points; "
@@ -63,7 +63,7 @@ public:
 	int phase_at(Real time) const;
 	/// Samples by phase; zeros where settings have changed since.
 	std::vector<int> samples() const;
-	/// False before the first sample and after a change of what decides the fields, until the next one.
+	/// False before the first sample, and after a change of a setting that affects the fields until the next sample.
 	bool sums_fit() const;
 	/// Fields at a point of the grid (FieldGrid::point); only while `sums_fit`.
 	template <int D>

@@ -83,7 +83,7 @@ np::ndarray velocity(const Averager& averager)
 void require_stress(const Averager& averager)
 {
 	if (!averager.stress)
-		throw std::invalid_argument("FieldAverager averages stress and pressure with stress=True only, got stress=False");
+		throw std::invalid_argument("FieldAverager averages stress and pressure only with stress=True, got stress=False");
 }
 
 template <bool contact, bool kinetic>
@@ -119,8 +119,8 @@ template <int axis>
 np::ndarray coordinates(const Averager& averager)
 {
 	if (!averager.has_points_along(axis))
-		throw std::invalid_argument(std::string("FieldAverager has no points along ") + char('x' + axis) +
-									"; read the middles of the bins along its axes, which are " + axes(averager));
+		throw std::invalid_argument(
+			std::string("FieldAverager has no points along ") + char('x' + axis) + "; its axes are " + axes(averager));
 	std::vector<Real> values(averager.points(axis));
 	for (std::size_t k = 0; k < values.size(); ++k) values[k] = averager.low[axis] + (Real(k) + 0.5) * averager.spacing;
 	return seam::array_of(values);
@@ -132,11 +132,11 @@ void bind_fields()
 {
 	np::initialize();
 	auto cls = seam::bind<Averager>(Averager::documentation);
-	cls.def("clear", &Averager::clear, "Forget all samples (at the end of a transient).");
-	cls.add_property("axes", axes, "axes that the grid has points along: 'xy' in two dimensions, 'xyz', or without averageAlong");
-	cls.add_property("x", coordinates<0>, "middles of the bins from the window's origin [m], shape (nx,)");
-	cls.add_property("y", coordinates<1>, "middles of the bins from the window's origin [m], shape (ny,)");
-	cls.add_property("z", coordinates<2>, "middles of the bins from the window's origin [m], shape (nz,)");
+	cls.def("clear", &Averager::clear, "Delete all samples (at the end of a transient).");
+	cls.add_property("axes", axes, "axes of the grid: 'xy' in two dimensions, 'xyz' in three, without the axis averageAlong");
+	cls.add_property("x", coordinates<0>, "middles of the bins, relative to the window's origin [m], shape (nx,)");
+	cls.add_property("y", coordinates<1>, "middles of the bins, relative to the window's origin [m], shape (ny,)");
+	cls.add_property("z", coordinates<2>, "middles of the bins, relative to the window's origin [m], shape (nz,)");
 	cls.add_property("samples", samples, "samples so far, shape (phases,)");
 	cls.add_property(
 		"areaFraction", area_fraction, "mean area fraction of disks [-], shape (phases, ny, nx); in two dimensions only");

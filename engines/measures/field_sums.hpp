@@ -1,4 +1,4 @@
-/// What is summed at every point of a field while a run goes, and the fields that the sums tell, in D = 2 or 3 dimensions.
+/// The sums at every point of a field during a run, and the fields computed from them, in D = 2 or 3 dimensions.
 ///
 /// Velocities enter as weighted running means and sums of squared deviations (West, Comm. ACM 22, 532 (1979)), so a small temperature on
 /// a large mean velocity survives any number of frames. Sums over frames and grains k, with the kernel's shares phi_k:
@@ -78,7 +78,7 @@ struct FieldMeans {
 	Eigen::Matrix<Real, D, D> contact_stress, kinetic_stress;  ///< [N/m^(D - 1)], positive in compression
 };
 
-/// The fields that the sums at one point tell after so many samples; without samples the sums are not read.
+/// The fields computed from the sums at one point and the number of samples; without samples the sums are not read.
 template <int D>
 FieldMeans<D> means_at(const Real* sums, Real samples, bool stress);
 

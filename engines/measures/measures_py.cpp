@@ -85,7 +85,7 @@ void bind_measures()
 {
 	np::initialize();
 	auto cls = seam::bind<Binner>(Binner::documentation);
-	cls.def("clear", &Binner::clear, "Forget all samples (at the end of a transient).");
+	cls.def("clear", &Binner::clear, "Delete all samples (at the end of a transient).");
 	cls.add_property("angles", angles, "centres of the bins [rad], shape (bins,), in (-pi, pi)");
 	cls.add_property("normalForce", of_bins<Binner::normal, false>,
 		"mean normal force, positive inwards; in 3D its part across planeNormal [N], shape (bins,)");

@@ -63,7 +63,7 @@ public:
 
 	void add(std::size_t grain, const Point<D>& centre);
 
-	/// Calls visit(grain) for the grains in the cell of `centre` and those around it, until one call answers true.
+	/// Calls visit(grain) for the grains in the cell of `centre` and those around it, until one call returns true.
 	template <class Visit>
 	bool any_near(const Point<D>& centre, Visit visit) const
 	{

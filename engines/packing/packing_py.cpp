@@ -116,7 +116,7 @@ KeepOut<3> keep_out_of(const py::object& function)
 		const Table distances(function(array_of<3>(Points<3>{ point })), 1, "keep_out's distances");
 		if (distances.rows != 1)
 			throw std::invalid_argument(
-				"keep_out must give one distance a point, shape (n,), got " + std::to_string(distances.rows) + " for one point");
+				"keep_out must give a distance per point, shape (n,), got " + std::to_string(distances.rows) + " for one point");
 		return distances.entries[0];
 	};
 }

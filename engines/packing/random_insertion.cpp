@@ -145,7 +145,7 @@ Points<D> random_insertion(const Box<D>& box, const std::vector<Real>& radii, co
 	require_box(box);
 	require_grains<D>(radii, {}, grain_word<D>);
 	require_grains(obstacles.radii, obstacles.centres, "obstacle");
-	if (obstacles.centres.size() != obstacles.radii.size()) throw std::invalid_argument("obstacles need one centre a radius");
+	if (obstacles.centres.size() != obstacles.radii.size()) throw std::invalid_argument("obstacles need one centre per radius");
 	if (attempts < 1) throw std::invalid_argument("attempts must be at least 1, got " + std::to_string(attempts));
 	const Real r_max = largest(radii);
 	require_room(box, r_max);

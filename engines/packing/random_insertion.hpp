@@ -14,7 +14,7 @@ struct Obstacles {
 	std::vector<Real> radii;  ///< [length]
 };
 
-/// Signed distance from a point of the box to what is to be kept clear of, > 0 outside of it, to the nearest image where the
+/// Signed distance from a point of the box to a solid that must stay free, > 0 outside of it, to the nearest image where the
 /// box is periodic [length]. A grain of radius R is put where the distance is at least R. Empty: nothing.
 template <int D>
 using KeepOut = std::function<Real(const Point<D>&)>;

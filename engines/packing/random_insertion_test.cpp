@@ -113,7 +113,7 @@ TEST(RandomInsertion, refuses_bad_input)
 		random_insertion<2>(box, { 1 }, { { { not_a_number, 0 } }, { 1 } }, 1);
 	}),
 		"obstacle 0"));
-	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1 }, { {}, { 1 } }, 1); }), "one centre a radius"));
+	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1 }, { {}, { 1 } }, 1); }), "one centre per radius"));
 	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 5.1 }, {}, 1); }), "must hold the largest disk"));
 	EXPECT_TRUE(mentions(complaint([&] { random_insertion<2>(box, { 1 }, {}, 1, 0); }), "at least 1, got 0"));
 	EXPECT_TRUE(mentions(complaint([] { uniform_radii(3, 1.1, 0.9, 1); }), "0 < d_min <= d_max, got 1.1 and 0.9"));

@@ -34,7 +34,7 @@ def test_every_class_is_looked_at():
 def test_a_name_that_does_not_exist_is_refused(cls, set_it):
     made = cls()
     with pytest.raises(
-        AttributeError, match=f"{cls.__name__} has no attribute 'boddy'; did you mean '.+'\\? It has .+"
+        AttributeError, match=f"{cls.__name__} has no attribute 'boddy'; did you mean '.+'\\? Its attributes are .+"
     ):
         if set_it == "assignment":
             made.boddy = 3
@@ -59,7 +59,7 @@ def test_a_name_that_does_not_exist_is_refused(cls, set_it):
     ],
 )
 def test_the_nearest_name_is_told(cls, wrong, right):
-    with pytest.raises(AttributeError, match=f"; did you mean '{right}'\\? It has "):
+    with pytest.raises(AttributeError, match=f"; did you mean '{right}'\\? Its attributes are "):
         setattr(cls(), wrong, 1)
 
 

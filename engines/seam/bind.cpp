@@ -33,7 +33,7 @@ void refuse_name(const std::string& class_name, const std::string& key, const py
 {
 	const std::string all = py::extract<std::string>(py::str(", ").join(names));
 	const std::string message =
-		class_name + " has no attribute '" + key + "'; did you mean '" + nearest(key, names) + "'? It has " + all;
+		class_name + " has no attribute '" + key + "'; did you mean '" + nearest(key, names) + "'? Its attributes are " + all;
 	PyErr_SetString(PyExc_AttributeError, message.c_str());
 	py::throw_error_already_set();
 	throw std::logic_error("unreachable");

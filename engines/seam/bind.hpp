@@ -106,7 +106,7 @@ auto bind(const char* documentation)
 		Self::class_name, documentation, py::no_init);
 	cls.def("__init__", py::raw_function(&construct<Self>, 1));  // first: later overloads are tried before it
 	cls.def(py::init<>());
-	cls.def("updateAttrs", &update<Self>, "Set attributes from a dictionary: all, or none if one of them is refused.");
+	cls.def("updateAttrs", &update<Self>, "Set attributes from a dictionary: all of them, or none if one is refused.");
 	cls.def("__setattr__", &assign<Self>);
 	Self::attributes([&](const char* name, auto member, const char* doc) {
 		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;

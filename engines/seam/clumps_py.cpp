@@ -1,4 +1,4 @@
-/// Gives a clump the centre of the body that it stands for: YADE puts it at the mean of its members' masses.
+/// Gives a clump the centre of mass of the body that it represents; YADE uses the centre of its members' masses.
 #include <boost/python.hpp>
 
 #include "engines/seam/registered.hpp"
@@ -29,11 +29,10 @@ void centre_clump(const yade::Scene& scene, int id, const Vector3r& centre)
 void bind_clumps()
 {
 	py::def("centre_clump", centre_clump, (py::arg("scene"), py::arg("clump"), py::arg("centre")),
-		"Put the position of a clump of a scene (O._sceneObj) at `centre` [m] and its orientation to the identity; its members "
-		"stay.\n\n"
-		"For bodies whose centre of mass is not that of their beads. Mass and inertia are the caller's to set, about that "
-		"centre.\n"
-		"Raises RuntimeError for a body that does not exist, ValueError for one that is no clump.");
+		"Set the position of a clump of a scene (O._sceneObj) to `centre` [m] and its orientation to the identity; its members\n"
+		"do not move.\n\n"
+		"This is for bodies whose centre of mass is not that of their beads. The caller must set mass and inertia about that\n"
+		"centre. Raises RuntimeError for a body that does not exist, ValueError for a body that is no clump.");
 }
 
 }  // namespace graindrive

@@ -16,8 +16,8 @@ public:
 			"m_i m_j / (m_i + m_j); a frozen partner counts as infinitely heavy [kg]");
 		visit("slip", &ContactPhys::slip, "tangential spring s [m], of body 1 against body 2");
 		visit("leverLoss", &ContactPhys::leverLoss,
-			"by how much the tangential force's lever was shorter than the radius in the last step [m]: 0, or half the overlap");
-		visit("slipping", &ContactPhys::slipping, "true if the tangential force was cut at Coulomb's bound in the last step");
+			"radius less the lever arm of the tangential force in the last step [m]: 0, or half the overlap");
+		visit("slipping", &ContactPhys::slipping, "true if the tangential force was at Coulomb's limit in the last step");
 	}
 
 	Real effectiveRadius = 0;

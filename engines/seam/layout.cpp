@@ -155,7 +155,7 @@ private:
 		const Integer value = static_cast<Integer>(0x11223300 + ++sentinel_);
 		attribute(cls, name, object, offset, py::object(value), value);
 	}
-	/// A single byte is easily right by chance: it must be the one that changes when YADE changes the flag.
+	/// A single byte may have the right value by chance: it must also change when YADE changes the flag.
 	template <class Set>
 	void flag(const string& member, const py::object& object, std::size_t offset, Set&& set)
 	{

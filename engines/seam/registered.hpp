@@ -1,6 +1,6 @@
-/// What every class that Graindrive adds to YADE shares: name, attributes for Python and archives, and checks of what is set.
+/// Common parts of all classes that Graindrive adds to YADE: name, attributes for Python and archives, and checks of values.
 ///
-/// A class derives from `Registered<Self, Base>` and says once what it has:
+/// A class derives from `Registered<Self, Base>` and declares its attributes once:
 ///
 ///   class Kicker : public Registered<Kicker> {
 ///   public:
@@ -31,7 +31,7 @@
 
 namespace graindrive {
 
-/// The house's answer to a bad value: the rule and what was given.
+/// The usual error for a bad value: the rule and the value received.
 template <class T>
 void require(bool holds, const char* rule, const T& got)
 {
@@ -183,7 +183,7 @@ public:
 
 	seam::Snapshot snapshot() { return { self(), static_cast<Base&>(*this) }; }
 
-	/// Sets one of our own attributes, unchecked; false if there is none of that name.
+	/// Sets one of our own attributes without a check; false if there is no attribute of that name.
 	bool set(const std::string& key, const boost::python::object& value)
 	{
 		bool found = false;
@@ -205,7 +205,7 @@ public:
 	}
 
 	void check() const {}
-	/// Told the name of every attribute that Python assigns; archives do not come here. What it throws takes the new value back.
+	/// Called with the name of every attribute that Python assigns, but not by archives. If it throws, the old value is restored.
 	void assigned(const std::string&) {}
 
 	template <class Archive>

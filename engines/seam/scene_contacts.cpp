@@ -1,4 +1,4 @@
-/// Finds who knows the contacts of a scene, and answers for YADE's own loop.
+/// Finds the source of a scene's contacts, and is that source on YADE's own loop.
 #include "engines/seam/scene_contacts.hpp"
 
 #include "engines/seam/contact_phys.hpp"
@@ -20,7 +20,7 @@ ContactSource& SceneContacts::of(yade::Scene* scene)
 	return loop ? *loop : *this;
 }
 
-/// Asked anew every step: members may be erased, released or added.
+/// Called at every step, because members may be erased, released or added.
 const std::vector<int>& SceneContacts::members_of(int body)
 {
 	const yade::Body& driven = body_of(*scene_, body, "contacts");
@@ -48,14 +48,14 @@ bool contacts_act(const yade::Scene& scene)
 	return !dead;
 }
 
-/// Coulomb's bound, where the law itself does not tell: YADE's own laws leave |F_t| exactly at the bound.
+/// Coulomb's bound, if the law itself does not report slipping: YADE's own laws leave |F_t| exactly at the bound.
 bool at_coulomb_bound(const yade::FrictPhys& phys)
 {
 	const Real bound = phys.tangensOfFrictionAngle * phys.normalForce.norm();
 	return bound > 0 && phys.shearForce.norm() >= bound * (1 - 1e-12);
 }
 
-/// A force that cannot be told must not be taken for none.
+/// A force that is unknown must not count as zero.
 [[noreturn]] void refuse_contact(int body, const yade::Interaction& interaction)
 {
 	throw std::runtime_error("the force of a contact on body " + std::to_string(body) + " is not known: it is a " +
@@ -96,7 +96,7 @@ void SceneContacts::contacts_on(int body, std::vector<BodyContact>& contacts)
 	}
 }
 
-/// Of the contacts alone: YADE's force container also holds what others put there (ForceEngine, O.forces.setPermF).
+/// Only the contacts' forces: YADE's force container also holds forces of other sources (ForceEngine, O.forces.setPermF).
 Wrench SceneContacts::wrench_on(int body)
 {
 	found_.clear();

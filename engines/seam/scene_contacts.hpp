@@ -1,4 +1,4 @@
-/// Finds who knows the contacts of a scene, and answers for YADE's own loop.
+/// Finds the source of a scene's contacts, and is that source on YADE's own loop.
 #pragma once
 #include "engines/base/contact_view.hpp"
 #include "engines/seam/yade.hpp"
@@ -11,7 +11,7 @@ public:
 	void contacts_on(int body, std::vector<BodyContact>& contacts) override;
 	Wrench wrench_on(int body) override;
 
-	/// The loop that answers for the scene: an engine of O.engines that is a ContactSource (GrainLoop), else this object.
+	/// The source of the scene's contacts: an engine of O.engines that is a ContactSource (GrainLoop), else this object.
 	ContactSource& of(yade::Scene* scene);
 
 	/// Ids that make up a body: its clump's members, or itself.

@@ -1,4 +1,4 @@
-/// Finds who knows all grains of a scene, and answers for YADE's own loop.
+/// Finds the source of all grains of a scene, and is that source on YADE's own loop.
 #include "engines/seam/scene_grains.hpp"
 
 #include "engines/seam/scene_contacts.hpp"

@@ -1,4 +1,4 @@
-/// Finds who knows all grains of a scene, and answers for YADE's own loop.
+/// Finds the source of all grains of a scene, and is that source on YADE's own loop.
 #pragma once
 #include "engines/base/grain_view.hpp"
 #include "engines/seam/yade.hpp"
@@ -10,7 +10,7 @@ class SceneGrains : public GrainSource {
 public:
 	void look(SceneView& view, bool with_contacts) override;
 
-	/// The loop that answers for the scene: an engine of O.engines that is a GrainSource (GrainLoop), else this object.
+	/// The source of the scene's grains: an engine of O.engines that is a GrainSource (GrainLoop), else this object.
 	GrainSource& of(yade::Scene* scene);
 
 private:

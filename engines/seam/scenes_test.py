@@ -33,7 +33,8 @@ def start(x=0.0, **changes):
 @pytest.mark.parametrize("cls", CLASSES)
 def test_an_unknown_keyword_lists_the_known_ones(cls):
     with pytest.raises(
-        AttributeError, match=f"{cls.__name__} has no attribute 'amplitud'; did you mean '.+'\\? It has .*label"
+        AttributeError,
+        match=f"{cls.__name__} has no attribute 'amplitud'; did you mean '.+'\\? Its attributes are .*label",
     ):
         cls(amplitud=1)
 
@@ -170,7 +171,7 @@ def test_one_drive_in_two_living_scenes_is_an_error():
     O.dt = 1e-3
     disk(3, 0)
     drives_only(drive)
-    with pytest.raises(RuntimeError, match="OscillationDrive began in another scene; make one for every scene"):
+    with pytest.raises(RuntimeError, match="OscillationDrive began in another scene; make a new drive for every scene"):
         O.step()
     O.switchToScene(0)
     drives_only(drive)

@@ -100,7 +100,7 @@ public:
 	long nDone;
 };
 
-/// Classes that dispatchers tell apart by an index.
+/// Classes that dispatchers distinguish by an index.
 class Indexable {
 public:
 	virtual void incrementMaxCurrentlyUsedClassIndexOfKin() = 0;

@@ -1,4 +1,4 @@
-/// Beads at equal steps along the inset of an outline, and the checks that they stand for the outline.
+/// Beads at equal steps along the inset of an outline, and the checks that they represent the outline.
 #include "engines/shapes/clump.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead bes
 constexpr Real largest_gap =
 	2.0;                      // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
 constexpr Real touch = 1e-5;  // beads touch the outline if they are within this part of their radius of it [-]
-constexpr Real most_beads = 1e5;   // more would take minutes, and no grain could tell
+constexpr Real most_beads = 1e5;   // more would take minutes without an effect on grains
 constexpr Real step_slack = 1e-5;  // steps may pass the asked one by rounded digits of a file, or 6 / 0.5 would give 13 beads [-]
 
 void require(bool holds, const char* rule, Real got)

@@ -18,7 +18,7 @@ constexpr Real smallest_length = 1e-50;  ///< of extents and diameters, for the 
 /// It keeps its vertices relative to an origin near the shape, so that what is computed of it loses no digits far away.
 class Outline {
 public:
-	/// A polygon from its vertices, in either sense. Clockwise is turned round; repeated, closing and collinear vertices go.
+	/// A polygon from its vertices, in either sense. Clockwise order is reversed; repeated, closing and collinear vertices are dropped.
 	/// @throws std::invalid_argument for vertices that are not finite, too large or too far away for the extent, for fewer than
 	/// three different ones, for no area, and for edges that meet
 	explicit Outline(const Points& vertices);

@@ -1,4 +1,4 @@
-/// Encodings are told by their bytes: marks, zeros at fixed places, EBCDIC's digits.
+/// Encodings are recognised by their bytes: marks, zeros at fixed places, EBCDIC's digits.
 #include "engines/shapes/plain_text.hpp"
 
 #include <algorithm>

@@ -74,7 +74,7 @@ void bind_outline()
 {
 	py::class_<Outline>("Outline",
 		"Outer edge of an intruder: a checked simple polygon, or an exact circle (from outline_of('disk')).\n\n"
-		"Outline(vertices): array-like of shape (n, 2) [length], in either sense. Clockwise is turned round; repeated, closing "
+		"Outline(vertices): array-like of shape (n, 2) [length], in either sense. Clockwise order is reversed; repeated, closing "
 		"and\n"
 		"collinear vertices are dropped. Raises ValueError, naming the vertex, for vertices that are not finite or beyond 1e50, "
 		"for\n"
@@ -90,7 +90,7 @@ void bind_outline()
 			"l of the wiggle paper's cavity model (its Table 1): from the lowest point with a vertical tangent to the top "
 			"[length]")
 		.add_property("about_centroid", &Outline::about_centroid,
-			"the outline with its solid's centroid at (0, 0), with all its digits even if it lies far out")
+			"the outline with its solid's centroid at (0, 0), in full precision even if it lies far from the origin")
 		.add_property("extent", &Outline::extent, "larger side of the box around the outline [length]")
 		.add_property("disk_radius", &Outline::disk_radius, "radius of an exact circle [length]; 0 for a polygon")
 		.def("turned", &Outline::turned, (py::arg("angle")), "The outline turned counter-clockwise about (0, 0) by angle [rad].");
@@ -107,7 +107,7 @@ void bind_clump()
 	py::def("clump_of", &clump_of, (py::arg("outline"), py::arg("bead_diameter"), py::arg("mass"), py::arg("spacing") = 1.0),
 		"Beads that touch the outline from inside, so that their envelope is the outline with corners rounded by the bead "
 		"radius.\n\n"
-		"bead_diameter [length], mass [mass] of the whole clump, spacing: longest step between beads in bead diameters, in (0, "
+		"bead_diameter [length], mass [mass] of the whole clump, spacing: largest distance of beads in bead diameters, in (0, "
 		"1].\n"
 		"Beads stand at every corner of the inset (arcs at reflex corners) and at equal steps between, within 1e-5 of their "
 		"radius\n"

@@ -12,17 +12,14 @@ namespace graindrive {
 using namespace geometry;
 
 const char* const Bo1_Solid_Aabb::documentation =
-	"Makes the Aabb of a Solid for YADE's collider. Sides without end become +-1e100 m, and just under two periods in a "
-	"periodic\n"
-	"cell.\n\n"
-	"A solid whose rotations are all blocked and that does not spin has the box of its present orientation. Any other has the "
-	"box of\n"
-	"the ball about state.pos in which it turns: the collider does not see that bodies turn. Set the spin of a driven solid "
-	"before\n"
-	"the run, or leave one rotation free.\n"
-	"In a periodic cell, whose edges must be perpendicular, a solid must go on without end along an axis, with\n"
-	"InsertionSortCollider(allowBiggerThanPeriod=True), or be no longer than half of the cell; O.run raises ValueError for "
-	"another.";
+	"Makes the Aabb of a Solid for YADE's collider. Endless sides become +-1e100 m, or just under two periods in a\n"
+	"periodic cell.\n\n"
+	"A solid whose rotations are all blocked and that does not spin gets the box of its present orientation. Any other\n"
+	"solid gets the box of the ball about state.pos that contains it in every orientation, because the collider does not\n"
+	"notice rotations. Set the spin of a driven solid before the run, or leave one rotation free. In a periodic cell,\n"
+	"whose edges must be perpendicular, a solid must either be endless along an axis, with\n"
+	"InsertionSortCollider(allowBiggerThanPeriod=True), or be no longer than half of the cell; for any other O.run raises\n"
+	"ValueError.";
 
 namespace {
 
@@ -55,7 +52,7 @@ Real smallest_radius(const yade::Scene& scene)
 	return smallest;
 }
 
-/// Cuts what goes on without end to just under two periods.
+/// Cuts endless sides to just under two periods.
 ///
 /// The collider moves a bound into the cell by whole periods, counted in an int: a bound at 1e100 never gets there, and its second sort
 /// does not end. A box longer than a period overlaps everything along that axis. The first sort walks through the cell from the lower

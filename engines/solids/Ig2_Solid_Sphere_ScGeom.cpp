@@ -1,4 +1,4 @@
-/// One question to the surface, and the ScGeom of its answer.
+/// Evaluates the surface once, and makes the ScGeom from the result.
 #include "engines/solids/Ig2_Solid_Sphere_ScGeom.hpp"
 
 #include "engines/solids/conversions.hpp"
@@ -9,20 +9,16 @@ namespace graindrive {
 using namespace geometry;
 
 const char* const Ig2_Solid_Sphere_ScGeom::documentation =
-	"The contact of a Solid, body 1, and a Sphere, body 2: normal n out of the solid, penetrationDepth delta = R - d, "
-	"contactPoint\n"
-	"c = x - (R - delta/2) n, with the distance d and normal n at the sphere's centre x. shearInc is that of the bodies' "
-	"material at c.\n\n"
-	"Graindrive's laws take R and the solid's material velocity v + omega x (c - state.pos) from it. So do YADE's own for "
-	"velocities\n"
-	"with Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False) and\n"
-	"Law2_ScGeom_MindlinPhys_Mindlin(preventGranularRatcheting=False) in scenes that are not periodic; with other settings they "
-	"take\n"
-	"the solid for a sphere of radius refR1, which is right for the sphere if the solid is at rest, never for the torque on the "
-	"solid.\n"
-	"Their Ip2_ make the pair's radius of refR1 and refR2: with solidRadius=1 it is R/2, as for YADE's walls and facets, with "
-	"1e12 R.\n"
-	"A question that the surface refuses stops the run after the step; O.run(n, True), O.wait() or O.step() raise RuntimeError.";
+	"The contact of a Solid, body 1, and a Sphere, body 2: normal n out of the solid, penetrationDepth delta = R - d,\n"
+	"contactPoint c = x - (R - delta/2) n, with the distance d and normal n at the sphere's centre x. shearInc is computed\n"
+	"from the velocities of the bodies' material at c.\n\n"
+	"Graindrive's laws use its radius R and the solid's material velocity v + omega x (c - state.pos). YADE's own laws use\n"
+	"these velocities too, with Law2_ScGeom_FrictPhys_CundallStrack(sphericalBodies=False) and\n"
+	"Law2_ScGeom_MindlinPhys_Mindlin(preventGranularRatcheting=False) in scenes that are not periodic. With other settings\n"
+	"they treat the solid as a sphere of radius refR1: the force on the sphere is then right if the solid is at rest, but\n"
+	"the torque on the solid is always wrong. YADE's Ip2_ compute the pair's radius from refR1 and refR2: with\n"
+	"solidRadius=1 it is R/2, as for YADE's walls and facets; with solidRadius=1e12 it is R. If the surface refuses to\n"
+	"compute a distance, the run stops after the step, and O.run(n, True), O.wait() or O.step() raise RuntimeError.";
 
 void Ig2_Solid_Sphere_ScGeom::check() const
 {
@@ -43,7 +39,7 @@ bool Ig2_Solid_Sphere_ScGeom::go(const yade::shared_ptr<yade::Shape>& first, con
 		nearest = motion_of(state1.pos, state1.ori).nearest(*solid.surface(), vec(centre));
 	} catch (const std::exception& error) {
 		complain(*scene, "the Solid of body " + std::to_string(interaction->getId1()) +
-							 " does not tell its distance at the centre of body " + std::to_string(interaction->getId2()) + ": " +
+							 " cannot give its distance at the centre of body " + std::to_string(interaction->getId2()) + ": " +
 							 error.what());
 		return false;
 	}

@@ -12,7 +12,7 @@ public:
 	static void attributes(Visit&& visit)
 	{
 		visit("solidRadius", &Ig2_Solid_Sphere_ScGeom::solidRadius,
-			"ScGeom.refR1 in radii of the sphere [-], for YADE's own Ip2_: 1 as YADE's walls and facets have it");
+			"ScGeom.refR1 in radii of the sphere [-], for YADE's own Ip2_: 1 as for YADE's walls and facets");
 	}
 	void check() const;
 	std::string get2DFunctorType1() const override { return "Solid"; }

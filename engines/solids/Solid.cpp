@@ -4,12 +4,10 @@
 namespace graindrive {
 
 const char* const Solid::documentation =
-	"A shape given by the distance to its surface and the normal there: graindrive.solids.surfaces makes such surfaces.\n\n"
-	"Solid(surface) or Solid(recipe='ball 0 0 0 1'). The surface is seen in the body's frame: its origin is state.pos, its axes "
-	"are\n"
-	"turned by state.ori. Stands with Bo1_Solid_Aabb and Ig2_Solid_Sphere_ScGeom. The recipe is what O.save keeps. Raises "
-	"ValueError\n"
-	"for a recipe that is none, naming the word and its place.";
+	"A shape given by the distance to its surface and the normal there; graindrive.solids.surfaces makes such surfaces.\n\n"
+	"Solid(surface) or Solid(recipe='ball 0 0 0 1'). The surface is given in the body's frame, whose origin is state.pos\n"
+	"and whose axes are rotated by state.ori. Use it with Bo1_Solid_Aabb and Ig2_Solid_Sphere_ScGeom. O.save stores the\n"
+	"recipe. Raises ValueError for an invalid recipe and names the word and its position.";
 
 void Solid::check()
 {

@@ -13,7 +13,7 @@ public:
 	template <class Visit>
 	static void attributes(Visit&& visit)
 	{
-		visit("recipe", &Solid::recipe, "the words that the surface is made of; see graindrive.solids.surfaces");
+		visit("recipe", &Solid::recipe, "text that defines the surface; see graindrive.solids.surfaces");
 	}
 	Solid() { createIndex(); }
 
@@ -38,10 +38,10 @@ private:
 	solids::Described described_;
 };
 
-/// True for a Solid, at the price of one comparison.
+/// True for a Solid; costs one comparison.
 inline bool is_solid(const yade::Shape* shape) { return shape && shape->getClassIndex() == Solid::class_index(); }
 
-/// Tells YADE's class factory of Solid, so that dispatchers find the class that functors name.
+/// Registers Solid in YADE's class factory, so that dispatchers find the class that functors name.
 void register_solid();
 
 }  // namespace graindrive

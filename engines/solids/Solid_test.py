@@ -550,7 +550,7 @@ def test_a_question_that_the_surface_refuses_is_raised():
     add_solid(surfaces.Surface("sampled 4 4 4 0 0 0 0.1 0.1 0.1 " + values))
     add_sphere((0.32, 0.1, 0.15 + R))
     loop()
-    with pytest.raises(RuntimeError, match="does not tell its distance at the centre of body 1: .*inside its grid"):
+    with pytest.raises(RuntimeError, match="cannot give its distance at the centre of body 1: .*inside its grid"):
         O.run(100, True)
     assert O.iter < 5
     O.bodies[1].state.pos = (0.1, 0.1, 0.15 + R - 1e-4)

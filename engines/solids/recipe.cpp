@@ -18,7 +18,7 @@ using namespace geometry;
 
 constexpr int deepest = 200;                    // surfaces within surfaces: each costs a call at every question
 constexpr std::size_t longest_word_shown = 40;  // of a damaged recipe
-constexpr const char* own_recipe = "take the recipe that Surface.recipe gives";
+constexpr const char* own_recipe = "use the text of Surface.recipe";
 
 /// What the reader refuses; what a surface refuses is another std::invalid_argument.
 class Damaged : public std::invalid_argument {
@@ -136,8 +136,8 @@ bool add_kind(const std::string& name, ReadSurface read)
 {
 	const bool is_word = !name.empty() && std::none_of(name.begin(), name.end(), is_space);
 	require(is_word, "a kind of surface needs one word as its name", "'" + name + "'", "give one such as torus");
-	require(table().emplace(name, read).second, "a kind of surface needs a name of its own", "'" + name + "'",
-		"taken are " + all_kinds());
+	require(
+		table().emplace(name, read).second, "a kind of surface needs a new name", "'" + name + "'", "taken are " + all_kinds());
 	return true;
 }
 
@@ -157,7 +157,7 @@ std::string_view RecipeReader::next(const std::string& wanted)
 {
 	while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
 	if (rest_.empty())
-		throw Damaged("a recipe must be whole, got one that ends after word " + std::to_string(place_) + ", where " +
+		throw Damaged("a recipe must be complete, got one that ends after word " + std::to_string(place_) + ", where " +
 					  std::string(kind_) + " needs " + wanted + "; " + own_recipe);
 	std::size_t length = 0;
 	while (length < rest_.size() && !is_space(rest_[length])) ++length;

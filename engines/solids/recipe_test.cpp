@@ -84,8 +84,8 @@ TEST(Recipe, KeepsSampledDistances)
 TEST(Recipe, RefusesDamageNamingWordAndPlace)
 {
 	EXPECT_EQ(refusal(""),
-		"a recipe must be whole, got one that ends after word 0, where the recipe needs a surface; take the recipe "
-		"that Surface.recipe gives");
+		"a recipe must be complete, got one that ends after word 0, where the recipe needs a surface; use the text of "
+		"Surface.recipe");
 	EXPECT_TRUE(mentions(refusal("bal 0 0 0 1"), "got 'bal' as word 1")) << refusal("bal 0 0 0 1");
 	EXPECT_TRUE(mentions(refusal("bal 0 0 0 1"), "ball, complement, cylinder"));
 	EXPECT_TRUE(mentions(refusal("ball 0 0 0"), "ends after word 4, where ball needs a number, its radius"));
@@ -138,7 +138,7 @@ TEST(Recipe, LearnsAShapeOfOnesOwnInOneLine)
 {
 	ASSERT_TRUE(known);
 	EXPECT_EQ(surface_of("placed 0 0 1 1 0 0 0 torus 2 0.5")->nearest({ 3, 0, 1 }).distance, 0.5);
-	EXPECT_TRUE(mentions(complaint([] { add_kind("torus", nullptr); }), "needs a name of its own, got 'torus'"));
+	EXPECT_TRUE(mentions(complaint([] { add_kind("torus", nullptr); }), "needs a new name, got 'torus'"));
 	EXPECT_TRUE(mentions(complaint([] { add_kind("two words", nullptr); }), "needs one word as its name"));
 }
 

@@ -50,7 +50,7 @@ void require_distance(const SampleGrid<3>& grid, const std::vector<double>& dist
 
 std::string sampled_recipe(const SampleGrid<3>& grid, const std::vector<double>& distances)
 {
-	// The slopes first, where they can be had: they tell more of a wrong function than a difference of two neighbours does.
+	// Check the slopes first if possible: they show more about a wrong function than the difference of two neighbours.
 	if (distances.size() == grid.size() &&
 		std::all_of(distances.begin(), distances.end(), [](double d) { return std::isfinite(d); }))
 		require_distance(grid, distances);

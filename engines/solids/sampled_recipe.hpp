@@ -1,4 +1,4 @@
-/// Recipes of sampled distances, after the checks that tell a distance from another function.
+/// Recipes of sampled distances, after checks that the function is a distance.
 #pragma once
 #include <string>
 #include <vector>

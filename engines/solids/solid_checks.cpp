@@ -38,9 +38,8 @@ void require_fits(const yade::Scene& scene, const yade::Body& body)
 		const Real length = box.high[k] - box.low[k], half = scene.cell->hSize(k, k) / 2;
 		if (length <= half || std::isinf(length)) continue;
 		std::ostringstream message;
-		message << named(body, "must go on without end or be no longer than half of the periodic cell along ") << "xyz"[k] << ", "
-				<< half << ", got " << length
-				<< "; YADE's collider would miss contacts. Make the cell longer, or the solid endless";
+		message << named(body, "must be endless or no longer than half of the periodic cell along ") << "xyz"[k] << ", " << half
+				<< ", got " << length << "; YADE's collider would miss contacts. Make the cell longer, or the solid endless";
 		throw std::invalid_argument(message.str());
 	}
 }

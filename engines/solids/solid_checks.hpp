@@ -1,4 +1,4 @@
-/// What a scene's solids need, and errors that come up where none may be raised.
+/// Checks of a scene's solids, and errors from places where no exception may be raised.
 ///
 /// YADE calls functors in OpenMP loops, out of which an exception would end the process. A complaint stops the run after the step;
 /// graindrive's O.run, O.step and O.wait raise it.
@@ -13,7 +13,7 @@ namespace graindrive {
 /// cell and for a Solid that is longer than half of it along an axis but does not go on without end
 void check_solids(const yade::Scene& scene);
 
-/// True if a Solid of the scene goes on without end along an axis of its periodic cell, for which YADE's collider needs
+/// True if a Solid of the scene is endless along an axis of its periodic cell, for which YADE's collider needs
 /// allowBiggerThanPeriod: its boxes then take the bodies where they are, not their images, which for such a solid is the same.
 bool solids_outgrow_cell(const yade::Scene& scene);
 

@@ -42,8 +42,8 @@ void bind_solids()
 	py::def("check_solids", check_solids, (py::arg("scene")),
 		"Raises ValueError for a Solid in a scene (O._sceneObj) that YADE's own loop cannot handle; O.run and O.step call it.");
 	py::def("solids_outgrow_cell", solids_outgrow_cell, (py::arg("scene")),
-		"True if a Solid goes on without end along an axis of a scene's periodic cell.");
-	py::def("take_complaint", take_complaint, "What a functor of solids complained of since the last call; '' for nothing.");
+		"True if a Solid is endless along an axis of a scene's periodic cell.");
+	py::def("take_complaint", take_complaint, "Error message of a functor of solids since the last call, or ''.");
 }
 
 }  // namespace graindrive

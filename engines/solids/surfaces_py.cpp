@@ -32,7 +32,7 @@ std::vector<Vec<3>> points_of(const py::object& array_like)
 		points.push_back({ entry[0], entry[1], entry[2] });
 		if (!geometry::is_finite(points.back()))
 			throw std::invalid_argument(
-				"points must be finite numbers, got another in row " + std::to_string(i) + "; correct it");
+				"points must be finite numbers, got one that is not in row " + std::to_string(i) + "; correct it");
 	}
 	return points;
 }
@@ -113,14 +113,14 @@ void bind_surfaces()
 		"place.",
 		py::no_init)
 		.def("__init__", py::make_constructor(&described, py::default_call_policies(), (py::arg("recipe"))))
-		.def_readonly("recipe", &Described::recipe, "words from which the surface is made anew, to the last bit")
+		.def_readonly("recipe", &Described::recipe, "text from which Surface(recipe) makes the same surface, to the last bit")
 		.def("distance", &distance, (py::arg("points")),
 			"Distances [m] of points, shape (n, 3) [m], from the surface, > 0 outside the solid: shape (n,).\n\n"
 			"Raises ValueError for another shape and for numbers that are not finite.")
 		.def("normal", &normal, (py::arg("points")),
-			"Unit normals out of the solid at the surface's nearest points to `points`, shape (n, 3): shape (n, 3).")
+			"Outward unit normals at the points of the surface nearest to `points`, shape (n, 3): shape (n, 3).")
 		.def("bounds", &bounds,
-			"A box (low, high), each of shape (3,) [m], outside of which there is nothing of the solid; sides may be infinite.")
+			"A box (low, high), each of shape (3,) [m], that contains the whole solid; its sides may be infinite.")
 		.def("__repr__", &representation)
 		.def("__eq__", &same)
 		.def_pickle(SurfacePickle());

@@ -154,7 +154,7 @@ def test_bad_input_is_refused_with_the_rule_the_value_and_the_way_out():
     refused(lambda: KINDS["ball"].placed(axis=(0, 0, 0)), "axis not zero, got [0.0, 0.0, 0.0]")
     refused(lambda: KINDS["ball"].placed(angle=math.inf), "angle must be finite")
     refused(lambda: KINDS["ball"].distance([1, 2, 3]), "shape (n, 3)", "got shape (3,); give [[x, y, z]] for one")
-    refused(lambda: KINDS["ball"].normal([[1, 2, math.nan]]), "must be finite numbers, got another in row 0")
+    refused(lambda: KINDS["ball"].normal([[1, 2, math.nan]]), "must be finite numbers, got one that is not in row 0")
     refused(
         lambda: surfaces.Surface("ball 0 0 0 x"), "radius of ball must be a number, got 'x' as word 5 of the recipe"
     )

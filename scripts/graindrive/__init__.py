@@ -4,7 +4,7 @@ __version__ = "0.1.0"
 
 
 def run(study, *, progress=True, **keys):
-    """Return the `Run` of a study with these keys, made unless it is there; see `graindrive.commands.started.run`."""
-    from .commands.started import run  # it needs the whole package, which most imports of a part do not
+    """Return the `Run` of a study with these keys; it is made if it does not exist. See `graindrive.commands.started.run`."""
+    from .commands.started import run  # not above: it imports the whole package
 
     return run(study, progress=progress, **keys)

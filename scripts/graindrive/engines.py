@@ -1,4 +1,4 @@
-"""Every engine, functor and function of the compiled module, with YADE found wherever Debian keeps it."""
+"""Imports Debian's YADE and offers every engine, functor and function of the compiled module."""
 
 import contextlib
 import glob
@@ -13,12 +13,12 @@ def find_yade():
         return
     os.environ.setdefault(
         "OMP_NUM_THREADS", "1"
-    )  # as the `yade` program: idle OpenMP threads spin and slow a busy machine
+    )  # as the `yade` program does: idle OpenMP threads that spin slow a busy machine
     for folder in glob.glob("/usr/lib/*/yade-double/py"):
         if folder not in sys.path:
             sys.path.append(folder)
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # it tells the version of Python
+        with contextlib.redirect_stdout(io.StringIO()):  # YADE prints the version of Python
             import yade  # noqa: F401
     except ModuleNotFoundError as error:
         raise ImportError(

@@ -1,4 +1,4 @@
-"""What is imported when it is first used: help, plans of campaigns and checks of parameters need neither YADE nor matplotlib.
+"""Imports on first use: help, plans of campaigns and checks of parameters need neither YADE nor matplotlib.
 
 `engines` stands for `graindrive.engines`; a study names its figure, film and report in the same way.
 """
@@ -7,9 +7,9 @@ import importlib
 
 
 class Lazily:
-    """Stands for a module, or for something in it, until it is used.
+    """A placeholder for a module, or for an attribute of a module, which is imported on first use.
 
-    `name` is the module's full name, `attribute` a name in it. Whoever only asks whether there is one imports nothing.
+    `name` is the module's full name, `attribute` a name in it. A test whether the object is None imports nothing.
     """
 
     def __init__(self, name, attribute=""):

@@ -22,9 +22,9 @@ LEAST, MOST = 1e-30, 1e30  # sizes of a number: products of a few stay far from 
 class Lever:
     """A parameter that trades accuracy for speed.
 
-    At `reference` a run is as accurate as the study goes; None stands for `auto`, the value that the study derives. A number
-    costs less in the direction `cheaper`, "higher" or "lower", and is tried in steps of `factor`; of a choice between words
-    `cheaper` is the tuple of the words that cost less, the most accurate first.
+    At `reference` a run has the study's full accuracy; None stands for `auto`, the value that the study derives. If the
+    parameter is a number, it costs less in the direction `cheaper`, "higher" or "lower", and is tried in steps of `factor`.
+    If it is a choice between words, `cheaper` is the tuple of the words that cost less, the most accurate first.
     """
 
     reference: Union[float, str, None]
@@ -47,9 +47,9 @@ def quantity(default, unit, meaning, *, identity=True, lever=None, watches=False
     """Declare one parameter of a study.
 
     `unit` is text ("d", "sqrt(d/g)", "-" for a pure number), `meaning` one line for the help table, `limits` any of
-    gt, ge, lt, le. `identity=False` marks what changes how a run is made but not its result: such keys
-    take no part in comparing runs. `lever` is the parameter's `Lever`, if it is one. `watches=True` marks what only says what a
-    run keeps or when it gives up (frames, fields, guards): it does not change what happens.
+    gt, ge, lt, le. `identity=False` marks a key that changes how a run is made but not its result: such keys
+    are ignored when runs are compared. `lever` is the parameter's `Lever`, if it is one. `watches=True` marks a key that only
+    decides what a run records or when it is stopped (frames, fields, guards) and does not change the motion.
     """
     if set(limits) - set(LIMITS):
         raise TypeError(f"limits are {', '.join(LIMITS)}, got {', '.join(limits)}")
@@ -57,11 +57,11 @@ def quantity(default, unit, meaning, *, identity=True, lever=None, watches=False
 
 
 class StudyParameters(BaseModel):
-    """What every study knows; a study derives its own class from this and adds its fields with `quantity`.
+    """The parameters of every study; a study derives its own class from this one and adds its fields with `quantity`.
 
-    A parameter is a number, 0 or of a size between 1e-30 and 1e30, a word or a switch; conditions between parameters are
-    pydantic root validators whose ValueError is one plain sentence. A key that may be None is `auto`: the study derives
-    its value from the others, in `auto_values`.
+    A parameter is a number (0, or of a size between 1e-30 and 1e30), a word or a switch; conditions between parameters are
+    pydantic root validators whose ValueError is one plain sentence. If the value None is allowed, it means `auto`: the study
+    derives the value from the others, in `auto_values`.
     """
 
     _choice = PrivateAttr(None)  # what `accuracy` took, a `tuning.choice.Choice`
@@ -72,26 +72,28 @@ class StudyParameters(BaseModel):
         "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
     )
     seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
-    loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own as the reference")
+    loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own loop as the reference")
     precision: Literal["double", "single"] = quantity(
         "double", "-", "number type of contact forces in GrainLoop", lever=Lever("double", ("single",))
     )
-    dt_factor: float = quantity(1.0, "-", "time step over the study's own choice", gt=0, lever=Lever(1.0, "higher"))
+    dt_factor: float = quantity(
+        1.0, "-", "time step, as a multiple of the study's own choice", gt=0, lever=Lever(1.0, "higher")
+    )
     accuracy: str = quantity(
         "",
         "-",
-        "take the cheapest measured levers with an error below this: 5%, or of another observable NAME:5%",
+        "use the cheapest levers whose measured error is below this: 5%, or NAME:5% for another observable",
         identity=False,
     )
     out: str = quantity("", "-", "run folder to write; empty: named after the study and the keys given", identity=False)
-    resume: bool = quantity(False, "-", "go on from an interrupted run of the same parameters", identity=False)
+    resume: bool = quantity(False, "-", "continue an interrupted run of the same parameters", identity=False)
     checkpoint_seconds: float = quantity(
         60.0, "s", "wall time between two checkpoints; 0: after every block of steps", identity=False, ge=0
     )
-    redo: bool = quantity(False, "-", "run again even if the run folder is there already", identity=False)
-    vtk: bool = quantity(False, "-", "also write files for ParaView, as export=vtk", identity=False)
+    redo: bool = quantity(False, "-", "run again even if the run folder exists already", identity=False)
+    vtk: bool = quantity(False, "-", "also write files for ParaView, like export=vtk", identity=False)
     export: str = quantity(
-        "", "-", f"files for other programs too, of {', '.join(EXPORTS)}, with commas", identity=False
+        "", "-", f"also write files for other programs: a comma list of {', '.join(EXPORTS)}", identity=False
     )
     film: bool = quantity(False, "-", "also film the run's frames, as animation.mp4; frames=200 or so", identity=False)
 
@@ -133,26 +135,26 @@ class StudyParameters(BaseModel):
 
     @property
     def choice(self):
-        """What the key accuracy took, a `tuning.choice.Choice`; None without that key."""
+        """The levers that the key accuracy chose, a `tuning.choice.Choice`; None without that key."""
         return self._choice
 
     @classmethod
     def watching(cls):
-        """Return the keys that only say what a run keeps or when it gives up."""
+        """Return the keys that only decide what a run records or when it is stopped."""
         return {key for key, field in cls.__fields__.items() if field.field_info.extra.get("watches")}
 
     def auto_values(self):
-        """Return {key: the value that is taken} of the keys that are `auto`; a study that has such keys overrides this."""
+        """Return {key: value to use} for the keys that are `auto`; a study that has such keys overrides this."""
         return {}
 
     def taken(self):
-        """Return the dict of all parameters, with the values that are taken for `auto`."""
+        """Return the dict of all parameters, with the derived values in place of `auto`."""
         return {**self.dict(), **self.auto_values()}
 
     def identity(self):
-        """Return the dict of all parameters that decide the result: two runs are the same when theirs are equal.
+        """Return the dict of all parameters that decide the result: two runs are the same if these dicts are equal.
 
-        It holds the value that is taken for `auto`, so that a run is the same whether that value was given or not.
+        It holds the derived values in place of `auto`, so a run is the same whether such a value was given or derived.
         """
         return {
             key: value
@@ -161,7 +163,7 @@ class StudyParameters(BaseModel):
         }
 
     def digest(self):
-        """Return 12 hexadecimal characters that stand for `identity()`."""
+        """Return 12 hexadecimal characters, a digest of `identity()`."""
         return digest(self.identity())
 
 
@@ -175,7 +177,7 @@ def sized(number):
 
 
 def known_formats(text):
-    """Return the formats that a comma list names, a tuple in the order of EXPORTS; ValueError for one that is not there."""
+    """Return the formats that a comma list names, a tuple in the order of EXPORTS; ValueError for an unknown one."""
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
         if name not in EXPORTS:
@@ -184,7 +186,7 @@ def known_formats(text):
 
 
 def plain_type(field):
-    """Return bool, int, float or str for a pydantic `ModelField`; None for one that is a choice between words."""
+    """Return bool, int, float or str for a pydantic `ModelField`; None if it is a choice between words."""
     if not isinstance(field.type_, type):
         return None
     return next(kind for kind in (bool, int, float, str) if issubclass(field.type_, kind))
@@ -196,13 +198,13 @@ def choices(field):
 
 
 def digest(values):
-    """Return 12 hexadecimal characters that stand for a dict of plain values (order of keys does not matter)."""
+    """Return 12 hexadecimal characters, a digest of a dict of plain values (the order of keys does not matter)."""
     text = json.dumps(values, sort_keys=True, default=repr, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def allowed(field):
-    """Return in words what values a parameter takes, from its pydantic `ModelField`: "a number > 0 [d]"."""
+    """Return a description of the allowed values of a parameter, from its pydantic `ModelField`: "a number > 0 [d]"."""
     if choices(field):
         return "one of " + ", ".join(map(str, choices(field)))
     info = field.field_info

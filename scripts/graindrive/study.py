@@ -1,6 +1,6 @@
-"""A study as one object: what it asks, measures and costs, how it is run and drawn, and what papers say of it.
+"""A study as one object: its parameters, observables and cost, its functions to run and to draw it, and the papers' claims.
 
-A study file makes one, named STUDY, and hands it to `headless.main`; `loaded` gives it to whoever only wants to know.
+A study file makes one, named STUDY, and passes it to `headless.main`; `loaded` returns it without running the study.
 """
 
 import contextlib
@@ -18,13 +18,13 @@ from .base.errors import UsageError
 from .parameters import StudyParameters
 from .postproc import quantities
 
-NAME = "STUDY"  # of the object in a study file
-NO_STUDIES = ("house",)  # files beside the studies that are none
+NAME = "STUDY"  # name of the object in a study file
+NO_STUDIES = ("house",)  # files in the folder of the studies that are not studies
 
 
 @dataclass(frozen=True)
 class Observable:
-    """A quantity of summary.json that the study is made for; one of them is the `headline`."""
+    """A quantity of summary.json that the study measures; one of them is the `headline`."""
 
     name: str
     unit: str
@@ -34,7 +34,7 @@ class Observable:
 
 @dataclass(frozen=True)
 class Constant:
-    """A number that the study fixes: it stands in every run folder with its unit and its meaning."""
+    """A number that the study fixes: every run folder holds it with its unit and its meaning."""
 
     value: float
     unit: str
@@ -43,7 +43,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Cost:
-    """What a run costs, packing aside: `work(p)` [`unit`], of which one core does `rate` a second, a number or `rate(p)`."""
+    """The cost of a run without the packing: `work(p)` [`unit`]; one core does `rate` of it per second, a number or `rate(p)`."""
 
     work: Callable
     rate: Union[float, Callable]
@@ -59,20 +59,20 @@ class Cost:
 
 
 def nothing_to_check(_p):
-    """All values of a study's class of parameters go together."""
+    """Accept all values: the parameters of the study have no conditions between them."""
 
 
 @dataclass(frozen=True)
 class Study:
-    """A study; ValueError for one that does not hold together, saying which part and why.
+    """A study; raises ValueError if its parts are inconsistent, and says which part and why.
 
     `run(p, folder)` does the work with checked parameters `p`, an instance of `parameters`, and an open `RunFolder`.
     `presets` maps scales to the values that they change, `defaults` are the values of a preset study. `check(p)` raises
-    UsageError for values that do not go together, before anything runs. `observables` are what the study measures, `cost`
-    what a run takes. `figure(path, frame=-1)` draws a finished run folder, `film(path)` films it. `report` (a
-    `postproc.campaign.planned.Report`) holds what papers claim, and the figures on which campaigns test that. `constants`,
-    {name: Constant}, go into every run folder. `family` is the name of the study of which this one is a preset; by itself its
-    own name.
+    UsageError for values that cannot be combined, before anything runs. `observables` are the quantities that the study
+    measures, `cost` is the cost of a run. `figure(path, frame=-1)` draws a finished run folder, `film(path)` makes a film of it.
+    `report` (a `postproc.campaign.planned.Report`) holds the claims of papers, and the figures with which campaigns test them.
+    `constants`, {name: Constant}, are written into every run folder. `family` is the name of the study of which this one is a
+    preset; without one it is the study's own name.
     """
 
     name: str
@@ -102,7 +102,7 @@ class Study:
             )
 
     def check_keys(self):
-        """ValueError unless presets and defaults speak of keys of the class of parameters."""
+        """Raise ValueError if presets or defaults name keys that the class of parameters does not have."""
         if not (isinstance(self.parameters, type) and issubclass(self.parameters, StudyParameters)):
             raise ValueError(f"study {self.name}: parameters must be a class derived from StudyParameters")
         if not self.presets:
@@ -110,11 +110,13 @@ class Study:
         for part, values in {**self.presets, "defaults": self.defaults}.items():
             unknown = sorted(set(values) - set(self.parameters.__fields__))
             if unknown:
-                raise ValueError(f"study {self.name}: {part} sets {', '.join(unknown)}, which are no keys of its own")
+                raise ValueError(
+                    f"study {self.name}: {part} sets {', '.join(unknown)}, which are not keys of the study"
+                )
 
     @property
     def headline(self):
-        """The `Observable` that the study is made for; None for a study without observables."""
+        """The main `Observable` of the study; None for a study without observables."""
         return next((observable for observable in self.observables if observable.headline), None)
 
     @property
@@ -123,25 +125,25 @@ class Study:
         return self.parameters.levers()
 
     def preset(self, name, **defaults):
-        """Return the same study under another name, with values of its own that a user may still change."""
+        """Return the same study under another name, with other default values, which a user may still change."""
         return dataclasses.replace(self, name=name, defaults={**self.defaults, **defaults})
 
     def usual(self, scale):
-        """Return the parameters of a run of that scale if nothing else is given."""
+        """Return the default parameters of a run of that scale."""
         return self.parameters(**{**self.defaults, **self.presets[scale], "scale": scale})
 
 
 def observables(system, headline, names):
-    """Return `Observable`s of names, parted by spaces, that `postproc.quantities` explains, with its units and meanings."""
+    """Return the `Observable`s of names, separated by spaces, with units and meanings from `postproc.quantities`."""
     known = quantities.QUANTITIES["summary"]
     units = {name: quantities.unit_of("summary", name, system) or "" for name in names.split()}
     return tuple(Observable(name, unit, known[name].meaning, name == headline) for name, unit in units.items())
 
 
 def loaded(path):
-    """Return the `Study` that the file `path` makes, without running it; UsageError if it makes none.
+    """Return the `Study` that the file `path` defines, without running it; UsageError if it defines none.
 
-    The file is imported under a name other than `__main__`, and finds the modules beside it.
+    The file is imported under a name other than `__main__`, and can import modules of its own folder.
     """
     path = Path(path).resolve()
     spec = importlib.util.spec_from_file_location(f"study_{path.stem}", path)
@@ -155,7 +157,7 @@ def loaded(path):
         sys.path.remove(str(path.parent))
     study = getattr(module, NAME, None)
     if not isinstance(study, Study):
-        raise UsageError(f"{path} makes no {NAME}, so it is not a study; see studies/guides/study.md")
+        raise UsageError(f"{path} defines no {NAME}, so it is not a study; see studies/guides/study.md")
     return study
 
 

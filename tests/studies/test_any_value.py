@@ -163,15 +163,15 @@ def test_no_combination_of_values_escapes_the_one_line_answer(study):
         ("wiggle", ["lid_pressure=1e9"], "weighs 1e[+]09 rho d g, but grains bear"),
         ("wiggle", ["intruder_mass=1e9"], "lower intruder_mass"),
         ("wiggle", ["lid_pressure=1e-6"], "critical .* of a body of mass 1e-06; lower dt_factor"),
-        ("wiggle", ["bead_diameter=1e-5"], "take larger beads"),
+        ("wiggle", ["bead_diameter=1e-5"], "give larger beads"),
         ("wiggle", ["amplitude=0", "period=1e-20"], "must be at least 40 time steps"),
         ("wiggle", ["orientation_deg=1e20"], "degrees"),
         ("magnus", ["field_spacing=1e-160"], "field_spacing=1e-160: the size"),
         ("magnus", ["width=60.5", "travel=40"], "whole number"),
         ("magnus", ["height=1e12"], "grains; between 1 and 10000000 are possible"),
-        ("magnus", ["out=~nosuchuser/x"], "out=~nosuchuser/x names a home that is not there"),
+        ("magnus", ["out=~nosuchuser/x"], "out=~nosuchuser/x names a home folder that does not exist"),
         ("magnus", ["out=a/.."], "is not the name of a run folder"),
-        ("magnus", ["out=" + "ü" * 120], "is a name of more than 238 bytes"),
+        ("magnus", ["out=" + "ü" * 120], "is longer than 238 bytes"),
     ],
 )
 def test_what_cannot_be_run_is_refused_before_anything_runs(study, arguments, words):

@@ -90,7 +90,7 @@ def test_a_run_says_and_stores_which_pressure_acts_at_the_bodys_depth(wiggle, tm
     said = capfd.readouterr().err
     # 6 d of bed weigh 5.04, the lid for the other 99 d of the paper's 105 d 83.16 rho d g.
     assert (
-        "pressure at the body's depth: 88.2 rho d g, 5.04 of the bed above and 83.16 of a lid (lid_pressure=auto)"
+        "pressure at the body's depth: 88.2 rho d g, 5.04 from the bed above and 83.16 from a lid (lid_pressure=auto)"
         in said
     )
     summary = json.loads((tmp_path / "run/summary.json").read_text())

@@ -295,7 +295,7 @@ def test_a_bed_that_is_a_liquid_is_said_to_be_one(drum, capsys):
     for p in (usual, large):
         drum_continuum.announce(p, SimpleNamespace(size=1))
     told = capsys.readouterr().err
-    assert told.count("flows as a liquid; raise largest_viscosity") == 1 and told.count("cells of") == 2
+    assert told.count("flows like a liquid; raise largest_viscosity") == 1 and told.count("cells of") == 2
 
 
 def test_a_finer_grid_costs_more_than_its_cells(drum):
@@ -313,26 +313,32 @@ def test_a_flow_that_outruns_its_step_says_which_key_to_lower(drum, tmp_path):
 @pytest.mark.parametrize(
     "keys, words",
     [
-        (dict(cells=10), "cells=10 across the drum do not resolve its flow; take 20 or more"),
+        (dict(cells=10), "cells=10 across the drum do not resolve its flow; give 20 or more"),
         (dict(dynamic_friction=0.2), "dynamic_friction=0.2 must not be below static_friction=0.246; exchange them"),
         (
             dict(viscosity="split"),
-            "no continuum can be made: the time step must not be above .* got 0.05; lower continuum_dt or largest_viscosity, or",
+            "these keys give no continuum: the time step must not be above .* got 0.05; lower continuum_dt or largest_viscosity",
         ),
-        (dict(filling=0.02), r"filling=0.02 makes a bed 1.6 cells deep, .* at least 6 deep: raise filling or cells"),
-        (dict(filling=0.95), "filling=0.95 leaves the continuum no free surface; it must be at most 0.9"),
+        (
+            dict(filling=0.02),
+            r"filling=0.02 makes a bed 1.6 cells deep, .* at least 6 cells deep; raise filling or cells",
+        ),
+        (dict(filling=0.95), "filling=0.95 gives the continuum no free surface; it must be at most 0.9"),
         (dict(pressure_solver="guess"), "pressure_solver=guess is not known; leave it empty or take one of multigrid"),
-        (dict(largest_viscosity=1e12), "largest_viscosity=1e[+]12 drowns the flow in round-off: .* lower it to 3.7e"),
-        (dict(tolerance=1e-30), "tolerance=1e-30 is not reached by the pressure at the start: .* give a larger"),
-        (dict(export="vtk,xyz"), "export=xyz writes grains, and model=continuum has none; take export=vtk"),
+        (
+            dict(largest_viscosity=1e12),
+            "largest_viscosity=1e[+]12 makes round-off larger than the flow: .* lower it to 3.7e",
+        ),
+        (dict(tolerance=1e-30), "the initial pressure does not reach tolerance=1e-30: .* give a larger"),
+        (dict(export="vtk,xyz"), "export=xyz needs grains, and model=continuum has none; give export=vtk"),
         (
             dict(froude=0.05, continuum_dt=0.5),
             r"continuum_dt=0.5 lets the wall cross 0.78 cells .* take less than 0.3",
         ),
-        (dict(froude=1.0), "Fr=1 at D=40 d: from 1 on grains are centrifuged; lower angular_velocity or froude"),
+        (dict(froude=1.0), "Fr=1 at D=40 d: from Fr=1 on the grains are centrifuged; lower angular_velocity or froude"),
         (dict(continuum_dt=1e-12), "the run would take .* raise continuum_dt or the drum's speed"),
         (dict(drum_diameter=10), "drum_diameter=10 d has no room"),
-        (dict(model="both", filling=0.8), "filling=0.8 leaves the grains no room"),
+        (dict(model="both", filling=0.8), "filling=0.8 leaves no room"),
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(drum, keys, words):

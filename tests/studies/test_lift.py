@@ -400,7 +400,7 @@ def test_a_file_that_describes_no_body_is_refused(lift, tmp_path, text, reason):
         (dict(breadth=1.5), "breadth=1.5 d must be at least"),
         (dict(width=3), "width=3 d must be at least"),
         (dict(travel=15.0), "own wake"),
-        (dict(travel=2.0), "too little behind the transient"),
+        (dict(travel=2.0), "too little after the transient"),
         (dict(lid_density=0, bulk_gravity=False), "needs a lid"),
         (dict(lid_density=1e6), "lower lid_density"),
         (dict(dt_factor=20), "lower dt_factor"),

@@ -116,7 +116,7 @@ def test_help_says_keys_levers_observables_and_cost(place):
     assert "dt_factor 1 higher" in lines and "time 20 s lower" in lines
     assert "* energy_left - energy at the end over that at the start" in lines
     assert (
-        "cost on one core, packing aside: smoke 2e+03 oscillator-steps, 1 s; demo 2e+04 oscillator-steps, 1 s"
+        "cost on one core, without the packing: smoke 2e+03 oscillator-steps, 1 s; demo 2e+04 oscillator-steps, 1 s"
         in lines[-1]
     )
     wrong = call(place, "oscillator.py", "dampin=1")

@@ -157,11 +157,11 @@ def test_a_missing_program_is_named(rounding, monkeypatch):
     [
         (dict(loop="yade"), "loop=yade precision=double: the rounding study runs both loops"),
         (dict(precision="single"), "precision=single: the rounding study runs both loops in every precision"),
-        (dict(grains=10), "a square number, got 10"),
-        (dict(grains=4), "grains=4: in the chaotic scene 9 at least"),
-        (dict(dt_factor=40), "dt_factor=40 makes steps of 0.62 of the critical one"),
+        (dict(grains=10), "a square number, got grains=10"),
+        (dict(grains=4), "grains=4 must be at least 9 in the chaotic scene"),
+        (dict(dt_factor=40), "dt_factor=40 gives a time step of 0.62 times the critical one"),
         (dict(average_time=21, relax_time=20), "average_time=21 must be longer than relax_time=20"),
-        (dict(export="xyz"), "export=xyz writes pictures of grains"),
+        (dict(export="xyz"), "export=xyz needs pictures of grains"),
     ],
 )
 def test_values_that_do_not_go_together_are_refused(rounding, keys, words):

@@ -97,7 +97,7 @@ def test_a_run_that_ends_before_its_pressure_is_there_says_so(shear, tmp_path, c
     assert found["steady"] == 0 and found["mean_pressure"] < 10
     told = capfd.readouterr().err
     assert (
-        f"mean_pressure={found['mean_pressure']:.3g} where pressure=25 is held; raise settle_strain and strain" in told
+        f"mean_pressure={found['mean_pressure']:.3g} differs from pressure=25; raise settle_strain and strain" in told
     )
 
 
@@ -122,19 +122,25 @@ def test_disks_that_never_touch_have_no_friction(shear):
 @pytest.mark.parametrize(
     "changes, words",
     [
-        (dict(settle_strain=2.0), "settle_strain=2 leaves nothing of strain=1 to average: 4 rows of"),
-        (dict(settle_strain=0.95), "settle_strain=0.95 leaves nothing of strain=1"),
-        (dict(strain=0.05, settle_strain=0), "leaves nothing of strain=0.05 to average"),
-        (dict(area_fraction=0.8, shear_rate=1e30), r"at shear_rate=1e[+]30 5 steps, .* lower dt_factor or the shear"),
-        (dict(inertial_number=10), r"shear by 0.075, more than 0.05"),
+        (
+            dict(settle_strain=2.0),
+            "settle_strain=2 leaves too little of strain=1 to average, which takes at least 4 rows of",
+        ),
+        (dict(settle_strain=0.95), "settle_strain=0.95 leaves too little of strain=1"),
+        (dict(strain=0.05, settle_strain=0), "leaves too little of strain=0.05 to average"),
+        (
+            dict(area_fraction=0.8, shear_rate=1e30),
+            r"at shear_rate=1e[+]30 the shortest row of the series, 5 steps, .* lower dt_factor or the shear",
+        ),
+        (dict(inertial_number=10), r"has a strain of 0.075, more than 0.05"),
         (
             dict(area_fraction=0.3, shear_rate=1.0),
-            "first area fraction, 0.625, to area_fraction=0.3 in a strain of 7.34,.*; raise it and strain, or lower shear",
+            "a strain of 7.34 from its first area fraction, 0.625, to area_fraction=0.3,.*; raise settle_strain and strain, or",
         ),
-        (dict(export="xyz"), "export=xyz writes pictures of the grains, and the shear study keeps none"),
+        (dict(export="xyz"), "export=xyz needs pictures of the grains, and the shear study keeps none"),
         (dict(shear_rate=1.0), "at constant pressure give inertial_number"),
         (dict(dt_factor=60), "time step .* is over the critical"),
-        (dict(pressure=1e5), "presses grains too far"),
+        (dict(pressure=1e5), "makes grains overlap too far"),
         (dict(inertial_number=1e-9), "steps"),
     ],
 )

@@ -109,7 +109,7 @@ def test_a_tuning_that_was_killed_makes_no_run_again(place):
     deadline = time.monotonic() + 120
     while True:  # Snakemake has a process group of its own, and keeps the campaign's lock until its runs have ended
         code, words = tuned(place, *keys)
-        if "another scripts/campaign is at work" not in words:
+        if "another scripts/campaign is working" not in words:
             break
         assert time.monotonic() < deadline
     assert code == 0, words

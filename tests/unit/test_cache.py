@@ -75,7 +75,7 @@ def test_no_changed_bit_of_an_entry_is_an_error_or_another_array(folder, capsys)
         found = cache.load(entry)
         refused += found is None
         assert found is None or np.array_equal(found["x"], [0, 1])
-    assert refused > 200 and capsys.readouterr().err.count("building it anew") == refused
+    assert refused > 200 and capsys.readouterr().err.count("building it again") == refused
 
 
 def test_an_array_in_place_of_an_entry_is_damage(folder, capsys):

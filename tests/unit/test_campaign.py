@@ -226,7 +226,7 @@ def test_a_file_that_is_no_campaign_is_refused(plan, content):
 
 def test_a_script_that_is_no_study_is_refused(plan, tmp_path):
     (tmp_path / "no_study.py").write_text("x = 1\n")
-    with pytest.raises(UsageError, match="campaign.yaml: .*no_study.py makes no STUDY"):
+    with pytest.raises(UsageError, match="campaign.yaml: .*no_study.py defines no STUDY"):
         plan(GOOD.replace(str(TOY), "no_study.py"))
 
 
@@ -253,7 +253,7 @@ def test_what_follows_two_dashes_is_snakemakes():
 def test_a_campaign_at_work_keeps_others_out(plan, tmp_path):
     found = plan(GOOD)
     with execution.opened(tmp_path / "out", found):
-        with pytest.raises(UsageError, match="another scripts/campaign is at work"):
+        with pytest.raises(UsageError, match="another scripts/campaign is working"):
             with execution.opened(tmp_path / "out", found):
                 pass
 
@@ -262,7 +262,7 @@ def test_what_a_killed_campaign_left_at_work_keeps_others_out(plan, tmp_path):
     found = plan(GOOD)
     with execution.opened(tmp_path / "out", found) as lock:
         left = subprocess.Popen(["cat"], stdin=subprocess.PIPE, pass_fds=[lock.fileno()])  # waits, as Snakemake would
-    with pytest.raises(UsageError, match="another scripts/campaign is at work"):
+    with pytest.raises(UsageError, match="another scripts/campaign is working"):
         with execution.opened(tmp_path / "out", found):
             pass
     left.communicate()

@@ -115,7 +115,7 @@ def test_frames_of_older_versions_are_refused(tmp_path, capsys):
     with h5py.File(out / "run.h5", "r+") as file:
         del file["frames/0001"].attrs["period"]
     assert command.main([str(out), "export=xyz"]) == 2
-    assert "frames of an older version, without the box's period; run it again" in capsys.readouterr().err
+    assert "frames of an older version, without the box's period; make the run again" in capsys.readouterr().err
 
 
 def test_paraviews_files_need_vtk(monkeypatch, tmp_path):

@@ -230,10 +230,10 @@ class TestBatchTable:
         [
             ("period seed\n1 2 3\n", 2, "line 2 has 3 values for 2 columns"),
             ("period seed\n1\n", 2, "line 2 has 1 values for 2 columns"),
-            ("period seed period!\n1 2 3\n", 2, "two columns have one name, period seed period!; keep one"),
+            ("period seed period!\n1 2 3\n", 2, "two columns have the same name, period seed period!; keep one"),
             ("period\n=\n2\n", 2, "'=' in line 2 has no value above it to repeat"),
-            ("period\n1\n", 1, "its rows are lines 2"),
-            ("", 1, "its rows are lines that it lacks"),
+            ("period\n1\n", 1, "its rows are in lines 2"),
+            ("", 1, r"its rows are in lines [(]none[)]"),
             ("# nothing\n", "x", "cannot be read"),
             ("\xff", 1, "cannot be read: .* codec can't decode"),
             ("period\nyes\n", 2, "period=yes is not allowed"),

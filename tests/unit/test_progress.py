@@ -84,7 +84,7 @@ def test_the_way_to_rest_is_the_energys_on_a_logarithmic_scale():
     energies = iter([1.0, 100.0, 10.0, 1.0, 3.0, 0.1, 0.009])  # to 0.01: four powers of ten below the highest
     aim = Calming(lambda: next(energies), 0.01, "J")
     assert [aim.look(done) for done in range(1, 8)] == pytest.approx([0, 0, 0.25, 0.5, 0.5, 0.75, 1], abs=1e-12)
-    assert aim.reached(1) and aim.in_words() == "kinetic energy 0.009 J, to fall below 0.01"
+    assert aim.reached(1) and aim.in_words() == "kinetic energy 0.009 J, target 0.01"
 
 
 def test_grains_that_have_not_fallen_yet_are_not_at_rest():
@@ -99,7 +99,7 @@ def test_a_log_says_how_far_grains_have_calmed_and_ends_when_they_rest(scene, ca
     timing = run_blocks(YadeMarch(5), 10_000, 10, aim.reached, label="settling", aim=aim)
     lines = capsys.readouterr().err.splitlines()
     assert timing.steps == 410 and len(lines) == 9, "from 40 % to 61 % when they may rest"
-    assert lines[0].startswith("settling:  10 %, kinetic energy 0.63 m g d, to fall below 0.0001, ")
+    assert lines[0].startswith("settling:  10 %, kinetic energy 0.63 m g d, target 0.0001, ")
     assert lines[0].endswith("M particle-steps/s") and lines[-1].startswith("settling: 100 %, ")
 
 

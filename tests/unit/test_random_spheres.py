@@ -60,8 +60,8 @@ def raising(points):
     "change, error, words",
     [
         (dict(fraction=0.5), UsageError, r"fraction must lie in \(0, 0.36\], got 0.5"),
-        (dict(fraction=1e-6), UsageError, "no place for spheres"),
-        (dict(keep_out=lambda points: points), ValueError, r"one distance a point, shape \(n,\)"),
+        (dict(fraction=1e-6), UsageError, "no room for spheres"),
+        (dict(keep_out=lambda points: points), ValueError, r"one distance per point, shape \(n,\)"),
         (dict(keep_out=raising), KeyError, "the solid's own mistake"),
         (dict(keep_out=lambda points: points[:, 0] * (np.nan if len(points) == 1 else 1)), ValueError, "got nan at"),
         (dict(periodic="xx"), ValueError, "periodic must name axes of x, y, z, each once"),

@@ -92,12 +92,12 @@ class TestFolder:
         (tmp_path / "full").mkdir()
         (tmp_path / "full/thesis.tex").write_text("years of work")
         for parameters in ({}, {"redo": True}):
-            with pytest.raises(UsageError, match="holds something else"), self.folder(tmp_path / "full", **parameters):
+            with pytest.raises(UsageError, match="holds something other"), self.folder(tmp_path / "full", **parameters):
                 pass
         assert [p.name for p in (tmp_path / "full").iterdir()] == ["thesis.tex"]
 
     def test_a_folder_that_appears_meanwhile_is_not_overwritten(self, tmp_path):
-        with pytest.raises(UsageError, match="complete in .*a.complete"):
+        with pytest.raises(UsageError, match="complete and kept in .*a.complete"):
             with self.folder(tmp_path / "a"):
                 (tmp_path / "a").mkdir()
                 (tmp_path / "a/other").write_text("")
@@ -148,5 +148,5 @@ def test_a_disk_that_fills_up_keeps_the_first_error_and_names_the_folder(tmp_pat
 def test_quantities_without_a_value_are_named_on_stderr(tmp_path, capsys):
     with RunFolder(StudyParameters(out=str(tmp_path / "run")), study="toy") as folder:
         folder.summarize(slope=float("nan"), slope_err=float("nan"), depth=1.0, depth_err=float("nan"), speed=None)
-    assert "toy: the run gives no slope, speed: null in summary.json" in capsys.readouterr().err
+    assert "toy: the run gives no value of slope, speed: null in summary.json" in capsys.readouterr().err
     assert json.loads((tmp_path / "run" / "summary.json").read_text())["slope"] is None

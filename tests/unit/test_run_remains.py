@@ -147,7 +147,7 @@ def test_a_run_that_was_complete_but_for_its_name_gets_it(place, capsys):
     with pytest.raises(AlreadyComplete):
         place.run()
     assert place.names() == ["a"] and (place.path / "a/figure.png").read_text() == "drawn"
-    assert "a killed run was complete but for its name" in capsys.readouterr().err
+    assert "a killed run was complete except for its name" in capsys.readouterr().err
 
 
 def test_a_complete_run_that_cannot_be_drawn_does_not_wedge_its_place(place, capsys):
@@ -177,7 +177,7 @@ def test_redo_that_fails_leaves_the_old_result(place, monkeypatch):
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", second_fails)
-    with pytest.raises(UsageError, match="cannot be replaced .*; this run is complete in .*a.complete"):
+    with pytest.raises(UsageError, match="cannot be replaced .*; this run is complete and kept in .*a.complete"):
         place.run(redo=True)
     assert place.rows() == place.rows("a.complete") == WHOLE and place.names() == ["a", "a.complete"]
 
@@ -219,9 +219,9 @@ DAMAGE = {
         "track.npz differs from its checksum",
     ),
     "no track": (lambda place: (place.facts().parent / "track.npz").unlink(), "track.npz cannot be read"),
-    "cut series": (cut_series, "run.h5 holds 3 rows of the 4 that its checkpoint goes on from"),
-    "other series": (other_series, "run.h5 holds other series than its checkpoint goes on from"),
-    "other frame": (other_frame, "run.h5 holds another frames/0001 than its checkpoint goes on from"),
+    "cut series": (cut_series, "run.h5 holds 3 of the 4 rows that its checkpoint needs"),
+    "other series": (other_series, "run.h5 holds other series than its checkpoint needs"),
+    "other frame": (other_frame, "run.h5 holds another frames/0001 than its checkpoint needs"),
     "half a file": (half_series, "run.h5 holds 0 rows of the 4"),
     "no series": (lambda place: (place.path / "a.interrupted/run.h5").unlink(), "run.h5 holds 0 rows of the 4"),
 }
@@ -262,7 +262,7 @@ def test_whole_remains_serve_where_further_ones_are_damaged(place, capsys):
     with place.open(resume=True) as folder:
         assert folder.resumed["step"] == 2
         go_on(folder, None, 6)
-    assert place.rows() == WHOLE and "track.npz differs from its checksum; it is passed over" in capsys.readouterr().err
+    assert place.rows() == WHOLE and "track.npz differs from its checksum; it is not used" in capsys.readouterr().err
 
 
 def test_remains_of_other_parameters_and_of_other_names_are_left_alone(place):
@@ -291,7 +291,7 @@ def test_a_run_that_goes_on_in_another_version_says_so(place, capsys, monkeypatc
     place.interrupted()
     monkeypatch.setattr("graindrive.runs.provenance.code_version", lambda: "9.9")
     place.run(resume=True)
-    assert "this is 9.9; the result will be of both" in capsys.readouterr().err
+    assert "this is version 9.9; the result will come from both" in capsys.readouterr().err
     with h5py.File(place.path / "a/run.h5") as file:
         assert file["provenance"].attrs["code_version_before"] != "9.9"
 
@@ -343,7 +343,7 @@ def test_a_link_is_followed_at_the_start(place):
 def test_a_dangling_link_is_refused_at_the_start(place):
     (place.path / "a").symlink_to(place.path / "nowhere")
     with pytest.raises(
-        UsageError, match="is a link to .*nowhere, which is not there; make that folder or remove the link"
+        UsageError, match="is a link to .*nowhere, which does not exist; make that folder or remove the link"
     ):
         place.open()
 
@@ -351,7 +351,7 @@ def test_a_dangling_link_is_refused_at_the_start(place):
 @pytest.mark.parametrize("kind", ["part-7", "old-1", "gone-123"])
 def test_a_name_that_the_next_run_would_clear_away_is_refused_at_the_start(place, kind):
     with pytest.raises(
-        UsageError, match=f"out=.*/.a.{kind} is a name that runs at work give to their folders.*dot out"
+        UsageError, match=f"out=.*/.a.{kind} is a name of the hidden folders of unfinished runs.*dot out"
     ):
         place.open(out=str(place.path / f".a.{kind}"))
     place.open(out=str(place.path / f"a.{kind}"))

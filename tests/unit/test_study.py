@@ -32,8 +32,8 @@ SPEED, FORCE = Observable("speed", "m/s", "how fast"), Observable("force", "N", 
     [
         (dict(parameters=dict), "parameters must be a class derived from StudyParameters"),
         (dict(presets={}), "presets must name at least one scale"),
-        (dict(presets={"demo": {"dept": 1}}), "study s: demo sets dept, which are no keys"),
-        (dict(defaults={"widht": 1}), "defaults sets widht, which are no keys"),
+        (dict(presets={"demo": {"dept": 1}}), "study s: demo sets dept, which are not keys"),
+        (dict(defaults={"widht": 1}), "defaults sets widht, which are not keys"),
         (dict(observables=(SPEED,)), "one observable must be the headline, got none"),
         (dict(observables=(FORCE, Observable("speed", "", "", True))), "must be the headline, got force, speed"),
         (dict(observables=(FORCE, SPEED, SPEED)), "observables must have different names, got force, speed, speed"),
@@ -74,7 +74,7 @@ def test_what_a_run_costs_follows_from_its_parameters():
     cost = Cost(work=lambda p: 1e6 * p.depth, rate=lambda p: 1e4 * p.depth, unit="cell-steps")
     study = made(cost=cost)
     assert cost.core_seconds(study.usual("demo")) == pytest.approx(100)
-    assert help_text(study).endswith("packing aside: smoke 1e+06 cell-steps, 100 s; demo 3e+06 cell-steps, 100 s")
+    assert help_text(study).endswith("without the packing: smoke 1e+06 cell-steps, 100 s; demo 3e+06 cell-steps, 100 s")
     assert Cost(work=lambda p: 30, rate=15).core_seconds(None) == 2 and duration(7200) == "2.0 h"
 
 
@@ -100,7 +100,7 @@ def test_a_run_folder_holds_the_constants_and_family_of_its_study(tmp_path):
 def test_a_file_that_makes_no_study_is_refused(tmp_path, text):
     (tmp_path / "no_study.py").write_text(text)
     with pytest.raises(
-        UsageError, match="no_study.py makes no STUDY, so it is not a study; see studies/guides/study.md"
+        UsageError, match="no_study.py defines no STUDY, so it is not a study; see studies/guides/study.md"
     ):
         loaded(tmp_path / "no_study.py")
     assert str(tmp_path) not in sys.path

@@ -1,4 +1,4 @@
-/// The sparse Cholesky factor of an older matrix as preconditioner, taken anew when it has aged.
+/// The sparse Cholesky factor of an earlier matrix as preconditioner; it is computed again when it has become inaccurate.
 #include <Eigen/SparseCholesky>
 
 #include "engines/continuum/pressure/open_cells.hpp"

@@ -19,7 +19,7 @@ protected:
 		while (done < limit) {
 			const double rz = preconditioner->apply(r, z);
 			const double curvature = matrix.turn_and_multiply(z, done > 0 ? rz / rz_before : 0, direction, product);
-			if (!(rz > 0 && curvature > 0)) return done + 1;  // rounding has eaten what was left
+			if (!(rz > 0 && curvature > 0)) return done + 1;  // rounding errors are as large as the residual
 			++done;
 			const double rr = go(rz / curvature);
 			if (rr <= target || stalled(rr)) break;

@@ -14,7 +14,7 @@ public:
 	explicit Extrapolation(int degree);
 	/// Remembers the solution of the present step.
 	void remember(const std::vector<double>& p);
-	/// Writes the guess for the next step; leaves p as it is if nothing has been remembered.
+	/// Writes the guess for the next step; does not change p if no earlier steps are stored.
 	void predict(std::vector<double>& p) const;
 	/// Forgets all: after a change that makes the next step unlike the last ones.
 	void forget() { known = 0; }

@@ -19,7 +19,7 @@ struct NeighbourRows {
 
 class FivePoint {
 public:
-	/// @return true if grid or parts have changed, so that memory of the grid's shape must be made anew
+	/// @return true if grid or parts have changed, so that arrays of the grid's shape must be allocated again
 	/// @throws std::invalid_argument if the coefficients are not allowed
 	bool update(const FaceCoefficients& b);
 

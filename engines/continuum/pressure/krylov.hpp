@@ -1,4 +1,4 @@
-/// What all solvers of the pressure share: the matrix, checks of what is given, mean values by part, the true residual.
+/// Common parts of all pressure solvers: the matrix, checks of the input, mean values by part, the true residual.
 #pragma once
 #include "engines/continuum/pressure/pressure_solver.hpp"
 #include "engines/continuum/pressure/preconditioner.hpp"

@@ -87,7 +87,7 @@ void correct(const Links& a, const Interpolation& p, const PlainField& correctio
 // Half a cycle goes through the rows once: each colour follows the one before it as closely as its neighbours allow, so that a row is
 // still in the cache when the last of them needs it.
 
-// From u = 0: relaxes forwards, and restricts what is left. On five points cells with even x + y come first, then the others, whose
+// From u = 0: relaxes forwards, and restricts the residual. On five points cells with even x + y come first, then the others, whose
 // residual is then 0.
 void descend_five(const Links& a, const double* f, double* u, double* rest, CoarseSide to)
 {

@@ -15,7 +15,7 @@ struct Run {
 
 class Parts {
 public:
-	/// Finds the parts anew if a face has opened or closed since the last call.
+	/// Finds the parts again if a face has opened or closed since the last call.
 	/// @param least faces with b <= least are closed
 	/// @return true if the parts may have changed
 	bool update(const FaceCoefficients& b, double least);

@@ -41,7 +41,7 @@ struct DiskStep : StepMotion<2> {
 	const std::uint32_t* block_pair_end;  ///< by block of free grains: all pairs owned up to the block end before this
 	const std::uint32_t* block_fold_end;
 	double* travelled;                    ///< by block: bound on any grain's way since pairs were selected [m]
-	const double* allowed;                ///< by block: how long that may grow before they must be selected anew [m]
+	const double* allowed;                ///< by block: its largest allowed value before pairs must be selected again [m]
 	double length[2], inverse_length[2];  ///< periods [m] and [1/m], 0 where not periodic
 	double image[4];  ///< displacement [m] along x and velocity [m/s] of the image one period further in y; 0 without shear
 	const void* law;  ///< the law of `KernelChoice`, in numbers of the precision

@@ -15,7 +15,7 @@
 namespace graindrive::loop {
 namespace {
 
-/// What the law needs to know of a pack of pairs, and where the pack stands.
+/// The law's input for a pack of pairs, and the position of the pack.
 template <class S>
 struct PackGeometry {
 	laws::Planar<S> n;

@@ -17,7 +17,7 @@ public:
 	void see_cell();
 	Processor processor() const { return kernel.processor; }
 	int width() const { return kernel.width; }
-	/// Rows behind the grains that fill up packs, made anew.
+	/// Makes the rows after the grains that fill up packs.
 	void make_dummies();
 
 	// A search, in this order; each by all threads with a barrier after it. The first and the third by one thread.
@@ -30,9 +30,9 @@ public:
 	void finish_selection();
 	const PairCounts& counts() const { return selected; }
 	std::size_t candidates() const { return state.pairs.candidates.size(); }
-	/// The selected pairs laid out anew, as the state has them.
+	/// Lays out the selected pairs again, as stored in the state.
 	void lay_out();
-	/// Back to a state of the same selection: pairs lie where they lay.
+	/// Returns to a state of the same selection, in which pairs have the same places.
 	void return_to_state();
 
 	// A step: early pairs before anything moves, then the sweep; both by all threads.

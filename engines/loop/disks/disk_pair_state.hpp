@@ -1,4 +1,4 @@
-/// What of the pairs of disks decides how a run goes on.
+/// The complete state of the pairs of disks.
 #pragma once
 #include <cstdint>
 #include <vector>

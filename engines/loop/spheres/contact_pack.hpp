@@ -52,7 +52,7 @@ inline Vector3<S> select(const Mask& where, const Vector3<S>& yes, const Vector3
 	return { select(where, yes.x, no.x), select(where, yes.y, no.y), select(where, yes.z, no.z) };
 }
 
-/// What the law needs to know of a pack of pairs, and where the pack stands.
+/// The law's input for a pack of pairs, and the position of the pack.
 template <class S>
 struct ContactPack {
 	Vector3<S> n, centres, rolling;  ///< w and (R_1 w_1 + R_2 w_2) x n

@@ -4,7 +4,7 @@
 
 namespace graindrive::loop::test {
 
-/// A body of a plain loop: by Euler's equations, about single axes, or as it is told.
+/// A body of a plain loop: it turns by Euler's equations, about single axes, or as prescribed.
 class PlainBody {
 public:
 	RigidBody<3> b;

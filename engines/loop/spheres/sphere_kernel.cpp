@@ -27,7 +27,7 @@ SphereKernel choose_sphere_kernel(const KernelChoice& choice)
 {
 	const SphereKernel kernel = kernel_of_processor(choice);
 	if (!kernel.sweep)
-		throw std::invalid_argument("the loop over spheres knows the laws " +
+		throw std::invalid_argument("the loop over spheres has only the laws " +
 									laws::listed(laws::names_where(laws::is_for_spheres), " and ") +
 									"; the others are for disks, or for YADE's own loop");
 	return kernel;

@@ -14,7 +14,7 @@ struct SphereStep : StepMotion<3> {
 	const void* law;        ///< the law of `KernelChoice`, in numbers of the precision
 	double* travelled;      ///< by block: bound on any sphere's way since pairs were selected [m]
 	const Vec<3>* drifts;   ///< by block: the velocity against which that is meant [m/s]
-	const double* allowed;  ///< by block: how long that may grow before they must be selected anew [m]
+	const double* allowed;  ///< by block: its largest allowed value before pairs must be selected again [m]
 };
 
 /// One thread's part of the pairs. Early pairs have a partner beyond the thread's blocks: their forces are computed before anything moves,

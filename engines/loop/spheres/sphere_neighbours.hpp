@@ -16,10 +16,10 @@ public:
 	/// @throws std::invalid_argument for a law that is for disks only
 	void set_up();
 	StepMotion<3>& motion() { return data; }
-	void see_cell() {}  ///< it stays as it is
+	void see_cell() {}  ///< nothing to do
 	Processor processor() const { return kernel.processor; }
 	int width() const { return kernel.width; }
-	/// Rows behind the grains that fill up packs, made anew.
+	/// Makes the rows after the grains that fill up packs.
 	void make_dummies();
 
 	// A search, in this order; each by all threads with a barrier after it. The first and the third by one thread.
@@ -32,7 +32,7 @@ public:
 	void finish_selection();
 	PairCounts counts() const;
 	std::size_t candidates() const { return state.pairs.partners.size(); }
-	/// The selected pairs laid out anew, as the state lists them.
+	/// Lays out the selected pairs again, as listed in the state.
 	void lay_out();
 	void return_to_state() { lay_out(); }
 

@@ -1,4 +1,4 @@
-/// What of the pairs of spheres decides how a run goes on.
+/// The complete state of the pairs of spheres.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -23,7 +23,7 @@ struct ListedPair {
 struct SpherePairState {
 	std::vector<std::uint32_t> candidate_begin;  ///< by owner row, and the end
 	std::vector<Partner> partners;               ///< of the candidates, by owner, then by row
-	std::vector<ListedPair> listed;  ///< filled for a checkpoint; while a run goes on springs lie in the kernels' memory
+	std::vector<ListedPair> listed;              ///< filled for a checkpoint; during a run springs are in the kernels' memory
 
 	template <class Visitor>
 	void visit(Visitor&& visitor)

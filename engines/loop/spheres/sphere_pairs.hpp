@@ -51,7 +51,7 @@ public:
 		const KeptPairs* kept;                 ///< after a search; else springs stay with their candidates
 		double smallest_budget;                ///< [m]
 		double horizon;                        ///< for how long the selection may last [s]
-		bool as_listed;                        ///< select what `state.pairs.listed` says, not what is near
+		bool as_listed;                        ///< select the pairs in `state.pairs.listed`, not the near ones
 	};
 
 	PairCounts select(const Source& source);
@@ -60,7 +60,7 @@ public:
 	/// Calls visit(owner row, partner row, KeptPair) for every selected pair.
 	template <class Visit>
 	void each_pair(const State<3>& state, const Visit& visit) const;
-	/// Pairs that touch neither a surface nor each other are none: how many places there are, dummies included.
+	/// The number of places for pairs, including dummies.
 	std::uint32_t places() const { return view.early_end; }
 	/// Calls visit(owner row, partner row, candidate, place).
 	template <class Visit>

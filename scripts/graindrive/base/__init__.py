@@ -1,1 +1,1 @@
-"""What every room uses: errors with exit codes, signals, output, files that appear whole."""
+"""Tools that all rooms use: errors with exit codes, signals, output, files that are written whole or not at all."""

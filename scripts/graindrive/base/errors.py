@@ -1,4 +1,4 @@
-"""The ways in which a run ends early: a request that cannot be met, an engine that stops it, a signal."""
+"""The errors that end a run early: a request that cannot be met, an engine that stops the run, a signal."""
 
 import errno
 import os
@@ -7,17 +7,17 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # no room on the disk, in the 
 
 
 class UsageError(Exception):
-    """What was asked for cannot be done; the message is one line: what was given, what is allowed, the way out."""
+    """The user's request cannot be met; the message is one line: the value received, the rule, the way out."""
 
     exit_code = 2
 
 
 class EngineError(RuntimeError):
-    """An engine stopped the run, as GrainLoop's guards do; the message is the engine's, one line that needs no traceback."""
+    """An engine stopped the run, as GrainLoop's guards do; the message is the engine's line, and no traceback is needed."""
 
 
 class Interrupted(BaseException):
-    """A signal asked the run to stop; not an `Exception`, so that no study swallows it by accident.
+    """A signal asked the run to stop; this is not an `Exception`, so that no study catches it by accident.
 
     `signal_number` is the signal's number [-]; the exit code is 128 + that, as in a shell.
     """
@@ -29,7 +29,7 @@ class Interrupted(BaseException):
 
 
 def is_full(error):
-    """True if an error says that a file could not grow; engines and HDF5 tell it in their text alone."""
+    """True if an error says that the disk, the quota or a file is full; engines and HDF5 say so only in their text."""
     words = [os.strerror(number) for number in FULL]
     return getattr(error, "errno", None) in FULL or any(word in str(error) for word in words)
 

@@ -1,6 +1,6 @@
-"""Words on stdout and stderr that nobody has to read: a pipe that closes or a disk that is full does not end a run.
+"""Output to stdout and stderr that cannot end a run: a closed pipe or a full disk is ignored.
 
-`run_program` runs another Python program that way, from its first line on.
+`run_program` runs another Python program in this way, from its first line on.
 """
 
 import contextlib
@@ -11,16 +11,16 @@ from pathlib import Path
 
 
 class Forgiving(io.RawIOBase):
-    """A stream of bytes to the file descriptor `descriptor`, which leads nowhere from the first write that fails.
+    """A stream of bytes to the file descriptor `descriptor`, which discards everything after the first write that fails.
 
-    The descriptor itself is turned to /dev/null then, so that what C++ code and child processes write there goes too.
+    The descriptor itself is then redirected to /dev/null, so that output of C++ code and child processes is discarded too.
     """
 
     def __init__(self, descriptor):
         self.descriptor = descriptor
 
     def write(self, content):
-        """Write bytes; return how many, all of them where nobody takes them."""
+        """Write bytes; return their number, also if they were discarded."""
         try:
             return os.write(self.descriptor, content)
         except OSError:
@@ -32,16 +32,16 @@ class Forgiving(io.RawIOBase):
         return self.descriptor
 
     def isatty(self):
-        """True if somebody sits there."""
+        """True if the descriptor is a terminal."""
         return os.isatty(self.descriptor)
 
     def writable(self):
-        """True: it takes everything."""
+        """True: the stream accepts all bytes."""
         return True
 
 
 def lead_nowhere(descriptor):
-    """Turn a file descriptor to /dev/null."""
+    """Redirect a file descriptor to /dev/null."""
     with contextlib.suppress(OSError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, descriptor)
@@ -49,7 +49,7 @@ def lead_nowhere(descriptor):
 
 
 def forgive():
-    """Let stdout and stderr outlive their readers, if they are those that the process was started with."""
+    """Make stdout and stderr ignore failing writes, if they are still those that the process was started with."""
     for name, descriptor in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)
         if stream is not None and stream is getattr(sys, f"__{name}__"):
@@ -61,14 +61,14 @@ def forgive():
 
 
 def forgiving(descriptor, stream):
-    """Return a text stream to a descriptor with the encoding of the old `stream`, written out line by line."""
+    """Return a line-buffered text stream to a descriptor, with the encoding of the old `stream`."""
     raw = io.BufferedWriter(Forgiving(descriptor))
     encoding = getattr(stream, "encoding", None) or "utf-8"
     return io.TextIOWrapper(raw, encoding=encoding, errors="backslashreplace", line_buffering=True)
 
 
 def run_program():
-    """Run the Python program that the next argument names, in `__main__` as Python itself would."""
+    """Run the Python program that the next argument names, as `__main__`, like Python itself."""
     forgive()
     del sys.argv[0]
     space = sys.modules["__main__"].__dict__

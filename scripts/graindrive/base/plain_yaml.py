@@ -1,4 +1,4 @@
-"""Reading YAML: plain values by the core schema of YAML 1.2, no key twice, files of a sensible size.
+"""Reads YAML: plain values follow the core schema of YAML 1.2, no key may appear twice, and the size of files is limited.
 
 PyYAML follows YAML 1.1, where `yes` is a switch, `1:30` is 90, `010` is 8, `1e-9` is text and `2026-01-02` a date.
 """
@@ -10,8 +10,8 @@ import yaml
 
 from .errors import UsageError, one_line
 
-MOST_BYTES = 4_000_000  # a plan of 100,000 runs written out in full; the parser needs a minute for as much
-PLAIN_VALUES = (  # (kind, what is read as that, from text to the value), first match first
+MOST_BYTES = 4_000_000  # the size of a plan that lists 100,000 runs one by one; the parser takes a minute for it
+PLAIN_VALUES = (  # (type, pattern of its texts, function from text to value); the first match counts
     ("null", r"~|null|Null|NULL|", lambda text: None),
     ("bool", r"true|True|TRUE|false|False|FALSE", lambda text: text.lower() == "true"),
     ("int", r"[-+]?[0-9]+", int),
@@ -23,7 +23,7 @@ brief.maxlevel, brief.maxdict, brief.maxlist, brief.maxstring, brief.maxother = 
 
 
 class StrictLoader(yaml.SafeLoader):
-    """YAML of mappings, lists and plain values alone; a key that a mapping holds twice is refused, its first value was lost."""
+    """Loader of mappings, lists and plain values only; refuses a key that a mapping holds twice (one value would be lost)."""
 
     yaml_implicit_resolvers = {}
     yaml_constructors = {None: yaml.SafeLoader.construct_undefined}
@@ -41,7 +41,7 @@ class StrictLoader(yaml.SafeLoader):
 
 
 def plain_value(pattern, convert):
-    """Return PyYAML's constructor of a plain value that matches `pattern` and that `convert` makes of its text."""
+    """Return PyYAML's constructor for plain values: their text must match `pattern`, and `convert` makes the value."""
 
     def construct(loader, node):
         text = loader.construct_scalar(node)
@@ -51,14 +51,14 @@ def plain_value(pattern, convert):
         except ValueError:  # Python reads at most 4300 digits
             pass
         raise UsageError(
-            f"{place(node)}: {one_line(text)} is no {node.tag.removeprefix(TAG)} that can be read; write another"
+            f"{place(node)}: {one_line(text)} is no {node.tag.removeprefix(TAG)} that can be read; give another value"
         )
 
     return construct
 
 
 def teach(loader):
-    """Have `loader` know plain values, text, lists and mappings, and no other tags."""
+    """Make `loader` accept plain values, text, lists and mappings, and no other tags."""
     for kind, expression, convert in PLAIN_VALUES:
         pattern = re.compile(f"(?:{expression})$")
         loader.add_implicit_resolver(TAG + kind, pattern, None)
@@ -72,17 +72,17 @@ teach(StrictLoader)
 
 
 def place(node):
-    """Return in words where a node of the file stands."""
+    """Return the place of a node in the file, in words."""
     return f"line {node.start_mark.line + 1}"
 
 
 def shortened(value):
-    """Return a value on one short line, also where lists of lists name each other a million times."""
+    """Return a value as one short line, even if lists refer to other lists a million times."""
     return one_line(brief.repr(value) if isinstance(value, (dict, list)) else value)
 
 
 def read(path, what):
-    """Return what a YAML file holds; UsageError if it cannot be read. `what` names what it should be: "the file of a plan"."""
+    """Return the content of a YAML file; UsageError if it cannot be read. `what` is the expected kind: "the file of a plan"."""
     try:
         return yaml.load(text_of(path, what), StrictLoader)  # noqa: S506 (derived from SafeLoader)
     except UsageError as error:
@@ -96,7 +96,7 @@ def read(path, what):
 
 
 def text_of(path, what):
-    """Return the text of a file of sensible size; a device or a pipe is not asked, it might never end."""
+    """Return the text of a file of limited size; devices and pipes are not opened, because they might never end."""
     if path.exists() and not path.is_file():
         raise UsageError(f"this is not a file; give {what}")
     if path.stat().st_size > MOST_BYTES:

@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and SIGHUP as one exception, raised at once except while files are being written."""
+"""Turns Ctrl-C, SIGTERM and SIGHUP into one exception, which is raised at once except while files are being written."""
 
 import contextlib
 import signal
@@ -8,8 +8,8 @@ from .errors import Interrupted
 
 STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
-_pending = None  # number of the signal that arrived and was not raised yet
-_holds = 0  # depth of `deferred` sections
+_pending = None  # number of a signal that has arrived but has not been raised yet
+_holds = 0  # number of nested `deferred` blocks
 
 
 def _receive(number, _frame):
@@ -29,7 +29,7 @@ def check():
 
 @contextlib.contextmanager
 def deferred():
-    """Hold signals back in this block, for writing files; what arrived is raised at its end."""
+    """Delay signals in this block, for writing files; a signal that arrived is raised at its end."""
     global _holds
     _holds += 1
     try:
@@ -42,9 +42,9 @@ def deferred():
 
 @contextlib.contextmanager
 def handled():
-    """Turn stop signals into `Interrupted` in this block; those ignored from the start (nohup, `&`) stay ignored.
+    """Turn stop signals into `Interrupted` in this block; signals ignored from the start (nohup, `&`) stay ignored.
 
-    Only the main thread may set signal handlers; elsewhere this does nothing.
+    Only the main thread may set signal handlers; in other threads this does nothing.
     """
     global _pending
     _pending = None

@@ -1,7 +1,7 @@
-"""Files and folders that appear on disk whole or not at all: written beside, synced, renamed; removed the same way.
+"""Writes files and folders that appear on disk whole or not at all: under a temporary name, synced, then renamed.
 
-A rename is the only step that a reader, or the call after a kill, can see. Syncing before it keeps the order on disk after a
-power failure too. Names that end in `.tmp` are being written and mean nothing to anybody else.
+Readers, and a program started after a kill, see only the rename. The sync before it preserves this order after a power failure
+too. Files whose names end in `.tmp` are unfinished and must be ignored. Folders are removed in the same way, after a rename.
 """
 
 import contextlib
@@ -20,14 +20,14 @@ def beside(path):
 
 
 def write_text(path, text):
-    """Write a text file (UTF-8), whole or not at all; an older one stays until then."""
+    """Write a text file (UTF-8), whole or not at all; an older file stays until the new one replaces it."""
     with written(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
 @contextlib.contextmanager
 def written(path):
-    """Yield the name to write in this block; afterwards it takes the name `path`, or goes if the block failed."""
+    """Yield a temporary name to write to in this block; the file is then renamed to `path`, or removed if the block failed."""
     temporary = beside(path)
     try:
         yield temporary
@@ -39,9 +39,9 @@ def written(path):
 
 
 class Patient(io.FileIO):
-    """A new file for a writer that cannot bear an error, as HDF5, which crashes: `raise_error` tells of the first one later.
+    """A new file for a writer that crashes on errors, as HDF5 does: `raise_error` reports the first error later.
 
-    What is written after an error goes nowhere.
+    Data written after an error are discarded.
     """
 
     def __init__(self, path):
@@ -62,7 +62,7 @@ class Patient(io.FileIO):
         return size
 
     def attempt(self, action):
-        """Call `action()` unless an error was met before; True if there is none now, its result is `done` then."""
+        """Call `action()` unless an error occurred before; True if there is still no error, and the result is in `done`."""
         try:
             self.done = action() if self.error is None else None
         except OSError as error:
@@ -70,17 +70,17 @@ class Patient(io.FileIO):
         return self.error is None
 
     def raise_error(self):
-        """Raise the first error that was met, if any."""
+        """Raise the first error that occurred, if any."""
         if self.error is not None:
             raise self.error
 
 
 def reserve(path, size):
-    """Have the file system keep room for `size` bytes of the file `path`, made if need be; OSError if it has none."""
+    """Reserve space on the disk for `size` bytes of the file `path`, made if missing; OSError if there is not enough."""
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
     try:
         os.posix_fallocate(descriptor, 0, size)
-    except OSError as error:  # some file systems cannot
+    except OSError as error:  # some file systems cannot reserve space
         if is_full(error):
             raise
     finally:
@@ -95,18 +95,18 @@ def put_in_place(temporary, path):
 
 
 def rename_folder(folder, path):
-    """Give `folder` the name `path`, which is free or an empty folder, after all in it is synced."""
+    """Sync all files in `folder`, then rename it to `path`, which must be free or an empty folder."""
     sync_tree(folder)
     os.rename(folder, path)
     sync(Path(path).parent)
 
 
 def sync(path):
-    """Have the disk hold what was written to a file, or which names a folder has."""
+    """Flush a file's content, or a folder's list of names, to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
-    except OSError:  # some network file systems sync no folders
+    except OSError:  # some network file systems cannot sync folders
         if not os.path.isdir(path):
             raise
     finally:
@@ -114,7 +114,7 @@ def sync(path):
 
 
 def sync_tree(folder):
-    """Sync a folder and all that is in it."""
+    """Sync a folder and all its files and folders."""
     for place, _, names in os.walk(folder):
         for name in names:
             sync(os.path.join(place, name))
@@ -122,7 +122,7 @@ def sync_tree(folder):
 
 
 def discard(folder, hidden):
-    """Remove a folder: it gets the name `hidden` first, under which a call that follows a kill removes the rest."""
+    """Remove a folder: rename it to `hidden` first, so that after a kill the next call can find and remove the rest."""
     shutil.rmtree(hidden, ignore_errors=True)
     os.rename(folder, hidden)
     shutil.rmtree(hidden, ignore_errors=True)

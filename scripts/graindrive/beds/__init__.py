@@ -1,1 +1,1 @@
-"""Packings of grains, made once and kept in a cache."""
+"""Packings of grains, which are made once and stored in a cache."""

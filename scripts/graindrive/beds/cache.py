@@ -1,4 +1,4 @@
-"""A cache of costly arrays (settled packings) on disk, keyed by the parameters and the recipe that made them."""
+"""A cache on disk for costly arrays (settled packings); the key is made of the parameters and the recipe's version."""
 
 import contextlib
 import fcntl
@@ -23,12 +23,12 @@ def cache_folder():
 
 
 def cached(kind, parameters, recipe, build):
-    """Return the dict of arrays that `build()` makes, from the cache if they are there already.
+    """Return the dict of arrays that `build()` makes, from the cache if it holds them.
 
-    `kind` names the entry ("bed"), `parameters` is the dict of plain values that decides it, `recipe` the version of
-    the code that builds it: raise it when the result changes. A damaged entry is built anew. Of processes that want
-    the same entry at once the first builds it and the others wait for it; should the first fail, the next one builds.
-    Where the cache cannot be written or locked the arrays are returned all the same, with a note if not written.
+    `kind` names the entry ("bed"), `parameters` is the dict of plain values that determines it, `recipe` is the version
+    of the code that builds it: increase it when the result changes. A damaged entry is built again. If several processes
+    need the same entry, the first one builds it and the others wait; if the first one fails, the next one builds.
+    If the cache cannot be written or locked, the arrays are still returned; a message says if they were not written.
     """
     path = cache_folder() / f"{kind}-{digest({'parameters': parameters, 'recipe': recipe})}.npz"
     damaged_before = path.exists()
@@ -36,7 +36,7 @@ def cached(kind, parameters, recipe, build):
     if arrays is not None:
         return arrays
     with one_at_a_time(path) as waited:
-        arrays = load(path) if waited or not damaged_before else None  # someone may have stored it meanwhile
+        arrays = load(path) if waited or not damaged_before else None  # another process may have stored it meanwhile
         if arrays is None:
             arrays = {name: np.asarray(array) for name, array in build().items()}
             store(path, arrays)
@@ -45,10 +45,10 @@ def cached(kind, parameters, recipe, build):
 
 @contextlib.contextmanager
 def one_at_a_time(path):
-    """Hold the lock of the entry at `path` among all processes that share the cache; tells whether it was awaited.
+    """Hold the lock of the entry at `path` among all processes that share the cache; yield whether we had to wait for it.
 
-    The lock is a file that its holder removes. It goes with the process, so a killed builder blocks nobody. Where
-    nothing can be locked (a read-only folder, some network file systems) everyone builds, and stores the same.
+    The lock is a file that its holder removes. It is released when the process ends, so a killed builder blocks no one.
+    Where locks are impossible (a read-only folder, some network file systems) every process builds and stores the same.
     """
     try:
         lock, waited = take_lock(path.with_name(f".{path.stem}.lock"), path.stem)
@@ -57,7 +57,7 @@ def one_at_a_time(path):
         return
     with lock:
         for left in path.parent.glob(f".{glob.escape(path.stem)}-*{path.suffix}"):
-            remove(left)  # of a builder that was killed while it stored
+            remove(left)  # left by a builder that was killed while it stored the entry
         try:
             yield waited
         finally:
@@ -78,7 +78,7 @@ def take_lock(path, entry):
             fcntl.flock(file, fcntl.LOCK_EX)
         if is_at(file, path):
             return file, waited
-        file.close()  # its holder removed it meanwhile: the lock is a new file now
+        file.close()  # its holder removed this file meanwhile; the lock is a new file now
         waited = True
 
 
@@ -98,19 +98,19 @@ def load(path):
         checksum = arrays.pop("checksum", np.array("")).item()
     except FileNotFoundError:
         return None
-    except Exception as error:  # zipfile and numpy have some ten kinds for bytes that are not theirs
+    except Exception as error:  # zipfile and numpy raise some ten kinds of errors for damaged files
         return damaged(path, error)
     return arrays if checksum == checksum_of(arrays) else damaged(path, "its checksum differs")
 
 
 def damaged(path, reason):
-    """Say that an entry is damaged; return None, so that it is built anew."""
-    print(f"graindrive: cache entry {path} is damaged ({reason}); building it anew", file=sys.stderr)
+    """Print that an entry is damaged; return None, so that it is built again."""
+    print(f"graindrive: cache entry {path} is damaged ({reason}); building it again", file=sys.stderr)
     return None
 
 
 def store(path, arrays):
-    """Write a dict of arrays to `path` in one step: a reader sees the old entry or the new, never half of one."""
+    """Write a dict of arrays to `path` in one step: a reader sees the old entry or the new one, never an incomplete one."""
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -120,14 +120,14 @@ def store(path, arrays):
         whole_files.put_in_place(temporary, path)
     except OSError as error:
         remove(temporary)
-        print(f"graindrive: cannot write cache {path} ({error.strerror}); going on without", file=sys.stderr)
+        print(f"graindrive: cannot write cache {path} ({error.strerror}); continuing without it", file=sys.stderr)
     except BaseException:
         remove(temporary)
         raise
 
 
 def remove(path):
-    """Remove a file if it is there."""
+    """Remove a file if it exists."""
     if path and os.path.exists(path):
         os.unlink(path)
 

@@ -1,6 +1,7 @@
-"""Channels of disks at a given area fraction between two rough walls, around a held body: insertion, closing walls, thinning.
+"""Makes channels of disks at a given area fraction between two rough walls, around a held body.
 
-The three recipes of Kumar, Dhiman, Reddy, Phys. Rev. E 99, 012902 (2019), section II, and the cache that keeps what they make.
+The three methods (insertion, closing walls, thinning) follow Kumar, Dhiman, Reddy, Phys. Rev. E 99, 012902 (2019), section II.
+Channels are stored in the cache.
 """
 
 from dataclasses import asdict, replace
@@ -12,7 +13,7 @@ from .channel_recipe import ChannelRecipe, check, finished, insert
 from .closing_walls import close
 from ..base.errors import UsageError
 
-RECIPE = 2  # raise it when a channel of the same parameters comes out different
+RECIPE = 2  # version of the recipe; increase it when the same parameters give a different channel
 THINNED_FROM, INSERTED_BELOW = 0.78, 0.5  # the paper's bounds between its three recipes
 
 __all__ = ["ChannelRecipe", "channel", "check", "check_room"]
@@ -29,15 +30,15 @@ def check_room(width, height, diameter):
 
 
 def fraction_after(phi, grain_area, widening):
-    """Return the area fraction of grains of `grain_area`, at `phi` before, when the area between the walls grew by `widening`."""
+    """Return the area fraction after the area between the walls has grown by `widening`; it was `phi` before."""
     return grain_area / (grain_area / phi + widening)
 
 
 def channel(recipe):
     """Return a channel as a dict: x, y, r of its grains, shape (n,); phi, mean kinetic energy, deepest overlap.
 
-    The same recipe gives the same channel; it is taken from the cache when it is there. Raises UsageError for an area
-    fraction that cannot be reached, with what was.
+    The same recipe gives the same channel; it is taken from the cache if possible. Raises UsageError for an area
+    fraction that cannot be reached, with the one that was reached.
     """
     check(recipe)
     if INSERTED_BELOW <= recipe.phi < THINNED_FROM:
@@ -52,7 +53,7 @@ def rows(points):
 
 
 def build(recipe):
-    """Make the channel by insertion or by closing walls; return its arrays and what was reached."""
+    """Make the channel by insertion or by closing walls; return its arrays."""
     if recipe.phi < INSERTED_BELOW:
         x, y, r = insert(recipe, recipe.height)
         return finished(recipe, x, y, r, energy=0.0)
@@ -60,7 +61,7 @@ def build(recipe):
 
 
 def thinned(recipe, denser):
-    """Return the channel with grains taken away at random until its area fraction is the recipe's."""
+    """Return the channel after grains were removed at random until its area fraction is that of the recipe."""
     order = np.random.default_rng(recipe.seed).permutation(len(denser["r"]))
     kept_area = np.cumsum(np.pi * denser["r"][order] ** 2)
     count = 1 + np.argmin(np.abs(kept_area - recipe.phi * recipe.free_area()))

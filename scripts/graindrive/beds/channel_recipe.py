@@ -1,4 +1,4 @@
-"""What a channel of disks is: its walls, its free area, the grains that fill it to an area fraction, their random insertion.
+"""The recipe for a channel of disks: walls, free area, the grains for an area fraction, their random insertion.
 
 The area fraction of Kumar, Dhiman, Reddy, Phys. Rev. E 99, 012902 (2019), section II, is that of the free area: between the
 centre lines of the walls, without the wall disks' halves in it and without the body.
@@ -23,8 +23,8 @@ class ChannelRecipe:
 
     Any consistent units: lengths, masses by `material.density`, times by its stiffness. Grains have diameters uniform in
     d_min..d_max. `beads` are rows x, y of the held body's bead centres, `outline` rows x, y of its corners, () for a single
-    disk. Walls close in with `closing_speed` under `material`, which may differ from the run's; grains count as at rest
-    when their mean kinetic energy is below that of the speed `rest_speed`.
+    disk. Walls close in with `closing_speed`; `material` is used for this and may differ from the run's. Grains count as at
+    rest when their mean kinetic energy is below that of the speed `rest_speed`.
     """
 
     width: float
@@ -44,16 +44,16 @@ class ChannelRecipe:
 
     def free_area(self, height=None):
         """Return the area that is free to grains in a channel of `height` (by default the recipe's own)."""
-        disks = round(self.width / self.d)  # of each wall; half of each disk lies inside the centre lines
+        disks = round(self.width / self.d)  # per wall; half of each disk lies inside the centre lines
         return self.width * ((height or self.height) - self.d) - disks * np.pi * self.d**2 / 4 - self.body_area
 
     def height_for(self, area, fraction):
-        """Return the height in which grains of that `area` are the `fraction` of the free area."""
+        """Return the height at which grains with the total `area` cover the `fraction` of the free area."""
         return self.height + (area / fraction - self.free_area()) / self.width
 
 
 def check(recipe):
-    """Raise UsageError for a channel without room, or whose walls cannot be tiled."""
+    """Raise UsageError for a channel without room, or if its length is no whole number of wall disks."""
     if abs(recipe.width / recipe.d - round(recipe.width / recipe.d)) > 1e-9:
         raise UsageError(f"width must be a whole number of wall disks, got {recipe.width / recipe.d:g}; round it")
     grains = recipe.phi * recipe.free_area() / mean_area(recipe)
@@ -69,7 +69,7 @@ def mean_area(recipe):
 
 
 def radii_for(recipe):
-    """Return the radii whose areas sum to `phi` of the free area, to within half a grain."""
+    """Return radii whose areas sum to `phi` times the free area, to within half a grain."""
     wanted = recipe.phi * recipe.free_area()
     radii = engines.uniform_radii(
         int(wanted / (np.pi / 4 * recipe.d_min**2)) + 1, recipe.d_min, recipe.d_max, recipe.seed
@@ -80,7 +80,7 @@ def radii_for(recipe):
 def insert(recipe, height):
     """Place the grains at random between walls `height` apart, clear of the body; return x, y, r."""
     radii = radii_for(recipe)
-    inner = height / 2 - recipe.d  # nowhere in reach of a wall disk
+    inner = height / 2 - recipe.d  # out of reach of the wall disks
     obstacles = packing.keep_clear(recipe)
     try:
         centres = engines.random_insertion((0, recipe.width, -inner, inner), True, radii, obstacles, recipe.seed)
@@ -92,7 +92,7 @@ def insert(recipe, height):
 
 
 def finished(recipe, x, y, r, energy):
-    """Return the arrays of a channel with its measured area fraction, which must be the one asked for."""
+    """Return the arrays of a channel with its measured area fraction, which must agree with the recipe's."""
     reached = float(np.sum(np.pi * r**2) / recipe.free_area())
     if abs(reached - recipe.phi) > TOLERANCE:
         raise UsageError(

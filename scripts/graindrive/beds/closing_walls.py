@@ -1,4 +1,4 @@
-"""Dense channels: the walls of a wider one close in on its grains, which then come to rest, or are found to be jammed."""
+"""Makes dense channels: the walls of a wider channel close in on its grains, which then come to rest or jam."""
 
 import os
 import sys
@@ -14,17 +14,16 @@ from ..runs.progress_line import Calming
 from ..scenes.yade_march import YadeMarch
 
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
-DEEPEST_OVERLAP = 0.01  # [R] where closing walls count as jammed
-CLOSING_DEPTH = 0.03  # [R] of overlap for which the time step of the preparation is chosen
-MOST_STOPS = 50  # until grains that are stopped again and again count as pressed
+DEEPEST_OVERLAP = 0.01  # [R] overlap above which the channel counts as jammed
+CLOSING_DEPTH = 0.03  # [R] overlap for which the time step of the preparation is chosen
+MOST_STOPS = 50  # number of stops after which grains that keep moving count as jammed
 
 
 def close(recipe):
-    """Let the walls of a wide channel close in until it has its height and its grains rest; return its arrays.
+    """Close the walls of a wide channel until it has its height and its grains are at rest; return its arrays.
 
-    Grains start with the velocity of their share of the way, v_y = -v y/y_wall, so that the channel shrinks as a whole.
-    Walls that push grains at rest leave the density of jamming behind them and a dilute middle: 0.84 and 0.53 at an area
-    fraction of 0.78.
+    Grains start with the velocity v_y = -v y/y_wall, so that the channel shrinks homogeneously. Walls that pushed grains at
+    rest would make jammed layers at the walls and a dilute middle: 0.84 and 0.53 at an area fraction of 0.78.
     """
     area = np.sum(np.pi * radii_for(recipe) ** 2)
     start = recipe.height_for(area, INSERTION_FRACTION)
@@ -52,7 +51,7 @@ def close(recipe):
 
 
 def bring_together(recipe, walls, start):
-    """Put the loop and the drives of the walls into YADE; return the steps until they are where they belong, and their speed."""
+    """Put the loop and the drives of the walls into YADE; return the steps until the walls are in place, and their speed."""
     from yade import O
 
     way = (start - recipe.height) / 2
@@ -69,12 +68,12 @@ def bring_together(recipe, walls, start):
 
 
 def free_cores(most=2):
-    """Return how many threads find a core of their own now: on a busy machine two that wait for each other are slower."""
+    """Return the number of threads for which a core is free now: on a busy machine, threads that wait for each other are slow."""
     return int(np.clip(len(os.sched_getaffinity(0)) - os.getloadavg()[0] + 0.5, 1, most))
 
 
 def halt(walls):
-    """Take the drives away and stop the walls where they are."""
+    """Remove the drives and stop the walls at their present positions."""
     from yade import O
     from yade.minieigenHP import Vector3
 
@@ -84,7 +83,7 @@ def halt(walls):
 
 
 def stop_if_jammed(recipe, area, walls):
-    """Raise UsageError with the area fraction reached so far, if grains are pressed together beyond jamming."""
+    """Raise UsageError with the area fraction reached so far if grains are compressed beyond jamming."""
     from yade import O
 
     contacts = scene.fast_loop().contacts()
@@ -98,10 +97,10 @@ def stop_if_jammed(recipe, area, walls):
 
 
 def rest(recipe, ids):
-    """Stop the grains until they do not set out again; return their mean kinetic energy over that of `rest_speed`.
+    """Stop the grains repeatedly until they stay at rest; return their mean kinetic energy over that of `rest_speed`.
 
-    Below jamming nothing but collisions stops them, and the slack between the walls sloshes for minutes at a few mm/s. So
-    velocities are set to zero, and the springs of what still overlaps push it apart, until that gives no more motion.
+    Below jamming only collisions slow the grains down, and they move between the walls for minutes at a few mm/s. So
+    velocities are set to zero; the springs of grains that still overlap push them apart. This repeats until they stay at rest.
     """
     from yade import O
 

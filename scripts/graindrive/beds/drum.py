@@ -1,4 +1,4 @@
-"""Drums half full of disks: the rough wall as one clump, grains poured into it at rest, and the cache that keeps them.
+"""Makes drums half full of disks: the rough wall is one clump, grains are poured into it at rest and stored in the cache.
 
 The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.2.
 """
@@ -15,19 +15,19 @@ from ..scenes import scene
 from ..base.errors import UsageError
 from ..scenes.material import SpringDashpotMaterial
 
-RECIPE = 1  # raise it when a drum of the same parameters comes out different
-CLEARANCE = 0.02  # [d] left between neighbours and to the wall where grains are placed
-STIR = 1.0  # [sqrt(g d)] speed of the grains where they are placed, which takes the memory of the lattice from the bed
-WALL_MASS = 1e9  # [rho d^2] of the wall as a whole, so that a grain's contacts with it count the grain's mass alone
-MOST_FILLING = 0.7  # of the drum's area, as a bed: so much fits in as a loose lattice of grains of 1 to 1.2 d
+RECIPE = 1  # version of the recipe; increase it when the same parameters give a different drum
+CLEARANCE = 0.02  # [d] initial gap between neighbours, and between grains and wall
+STIR = 1.0  # [sqrt(g d)] initial speed of the grains; random motion destroys the order of the lattice
+WALL_MASS = 1e9  # [rho d^2] of the whole wall; so large that the reduced mass of a contact with it is the grain's mass
+MOST_FILLING = 0.7  # largest filling: the grains of such a bed, of 1 to 1.2 d, still fit in as a loose lattice
 
 
 @dataclass(frozen=True)
 class DrumRecipe:
     """A resting drum, its axis at the origin, with a wall of `wall_disks` disks of diameter 1 centred on its circle.
 
-    Lengths in d, times in sqrt(d/g), masses in rho d^2. Grains have diameters uniform in d_min..d_max. `material` is that of
-    the pouring. `rest` is the kinetic energy per grain, in m g d, at which the grains count as settled.
+    Lengths in d, times in sqrt(d/g), masses in rho d^2. Grains have diameters uniform in d_min..d_max. `material` is used for
+    the pouring. The grains count as settled if their kinetic energy per grain is below `rest` [m g d].
     """
 
     diameter: float
@@ -47,21 +47,21 @@ class DrumRecipe:
 
     @property
     def pitch(self):
-        """Edge of the square lattice on which the grains are placed [d]: it fills the whole room."""
+        """Spacing of the square lattice on which the grains are placed [d]: the lattice fills the whole room."""
         return float(np.sqrt(np.pi) * (self.room - self.d_max / 2) / np.sqrt(self.grains))
 
 
 def settled(recipe):
     """Return a drum's settled grains as a dict: x, y, r, shape (n,), kinetic energy per grain, deepest overlap [smaller radius].
 
-    The same recipe gives the same grains; they are taken from the cache when they are there.
+    The same recipe gives the same grains; they are taken from the cache if possible.
     """
     check(recipe)
     return cache.cached("drum", asdict(recipe), RECIPE, lambda: pour(recipe))
 
 
 def check(recipe):
-    """UsageError for a drum in which no grain, or not so many grains, can be placed."""
+    """Raise UsageError for a drum that has no grain, too many grains, or no room for its grains."""
     if recipe.grains < 1:
         raise UsageError(
             f"a drum of {recipe.diameter:g} d holds no grain at this filling; raise filling or drum_diameter"
@@ -75,7 +75,7 @@ def check(recipe):
 
 
 def too_full(recipe):
-    """Return the UsageError that says that the grains have no room."""
+    """Return the UsageError for grains that do not fit."""
     return UsageError(
         f"{recipe.grains} grains of up to {recipe.d_max:g} d do not fit loosely into a drum of {recipe.diameter:g} d;"
         " lower filling or grains"
@@ -83,7 +83,7 @@ def too_full(recipe):
 
 
 def filling_by_level():
-    """Return (part of a drum's area that lies below a level, the level over the diameter from the bottom), each (n,)."""
+    """Return (share of a drum's area below a level, height of the level above the bottom over the diameter), each (n,)."""
     level = np.linspace(-0.5, 0.5, 4001)
     area = np.cumsum(np.sqrt(np.maximum(0.25 - level**2, 0)))
     return area / area[-1], level + 0.5
@@ -104,7 +104,7 @@ def add_wall(diameter, disks):
 
 
 def start():
-    """Empty YADE's scene and leave it without periods."""
+    """Empty YADE's scene and make it non-periodic."""
     from yade import O
 
     O.reset()
@@ -125,7 +125,7 @@ def place(recipe):
 
 
 def lattice_of(recipe):
-    """Return (edge of the lattice, radius within which its sites lie) with room for all grains and their jitter."""
+    """Return (spacing of the lattice, radius within which its sites lie) with room for all grains and their jitter."""
     pitch = recipe.pitch
     while pitch >= recipe.d_max + CLEARANCE:
         reach = recipe.room - recipe.d_max / 2 - (pitch - recipe.d_max) / np.sqrt(2)
@@ -137,7 +137,7 @@ def lattice_of(recipe):
 
 
 def pour(recipe):
-    """Let the grains fall onto the resting wall until they rest; return them."""
+    """Let the grains fall onto the wall, which is at rest, until they are at rest; return them."""
     from yade import O
     from yade.minieigenHP import Vector3
 
@@ -149,7 +149,8 @@ def pour(recipe):
     for id_, (vx, vy) in zip(ids, stir):
         O.bodies[id_].state.vel = Vector3(float(vx), float(vy), 0)
     print(
-        f"pouring {len(ids)} grains into a drum until they keep less than {recipe.rest:g} m g d each", file=sys.stderr
+        f"pouring {len(ids)} grains into a drum until each has less than {recipe.rest:g} m g d of kinetic energy",
+        file=sys.stderr,
     )
     scene.run_on("grain", recipe.material, gravity=1.0, largest_overlap=packing.LARGEST_OVERLAP)
     O.dt = recipe.dt
@@ -169,9 +170,9 @@ def deepest_overlap(recipe, bed):
 
 
 def require_inside(diameter, rows):
-    """RuntimeError if a grain of `rows` has left the drum through its wall."""
+    """Raise RuntimeError if a grain of `rows` has left the drum through its wall."""
     reach = np.hypot(rows["x"], rows["y"])
     if len(reach) and not reach.max() < diameter / 2:
         raise RuntimeError(
-            f"a grain left the drum of {diameter:g} d: it lies at {reach.max():.4g} d from the axis; lower dt_factor"
+            f"a grain left the drum of {diameter:g} d: it is {reach.max():.4g} d from the axis; lower dt_factor"
         )

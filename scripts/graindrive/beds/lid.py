@@ -1,7 +1,7 @@
-"""A lid in place of depth: it presses on a bed as much as the bed that was left out would weigh, and has as much mass.
+"""A lid that replaces part of a bed's depth: it has the weight and the mass of the missing part of the bed.
 
-`grains`: the uppermost layer of the bed is made heavier; it heaves and sags as a surface does. `rigid`: a row of disks
-glued together, free to move up and down, lies on the bed and keeps it level.
+`grains`: the uppermost layer of the bed is made heavier; it deforms like a free surface. `rigid`: a row of disks
+glued together lies on the bed and keeps its surface level; it is free to move up and down.
 """
 
 import numpy as np
@@ -13,15 +13,15 @@ BED_FRACTION = 0.84  # area fraction of a settled bed of 0.9-1.1 d disks
 
 
 def weight_of_bed(depth):
-    """Return the weight over width [rho d g] of `depth` [d] of bed, 0 where there is none."""
-    return 100 * BED_FRACTION * max(depth, 0.0) / 100  # in this order 55 d weigh 46.2 to the last bit
+    """Return the weight over width [rho d g] of a bed of depth `depth` [d], 0 for depth <= 0."""
+    return 100 * BED_FRACTION * max(depth, 0.0) / 100  # in this order 55 d give exactly 46.2
 
 
 def heavy_layer(bed, width, pressure, density, area_fraction):
-    """Return the densities (n,) of a settled bed's grains with which its uppermost layer presses by `pressure` more.
+    """Return the densities (n,) of a settled bed's grains with which its uppermost layer adds `pressure` to the bed.
 
-    `bed` holds y and r, shape (n,); the layer are the highest grains with the area of LAYER at `area_fraction`. Units of
-    the caller with g = 1; `pressure` is weight over width, `density` that of the other grains.
+    `bed` holds y and r, shape (n,); the layer consists of the highest grains that fill LAYER at `area_fraction`. Units of
+    the caller with g = 1; `pressure` is weight over width, `density` is the density of the other grains.
     """
     areas = np.pi * bed["r"] ** 2
     from_the_top = np.argsort(-bed["y"], kind="stable")
@@ -33,16 +33,16 @@ def heavy_layer(bed, width, pressure, density, area_fraction):
 
 
 def pressures_in_words(depth, papers_depth, load, is_auto):
-    """Return the line that says which pressure acts at `depth` [d] under a lid of `load` [rho d g], and the paper's."""
+    """Return a line on the pressure at `depth` [d] under a lid of `load` [rho d g], and on the paper's pressure."""
     bed, papers = weight_of_bed(depth), weight_of_bed(papers_depth)
     return (
-        f"pressure at the body's depth: {bed + load:.4g} rho d g, {bed:.4g} of the bed above and {load:.4g} of a lid"
+        f"pressure at the body's depth: {bed + load:.4g} rho d g, {bed:.4g} from the bed above and {load:.4g} from a lid"
         f" (lid_pressure={'auto' if is_auto else format(load, 'g')}); {papers:.4g} in the paper"
     )
 
 
 def room(kind, pressure):
-    """Return how much of the bed the lid takes for itself, from the surface down [d]."""
+    """Return the thickness of the uppermost part of the bed that the lid occupies [d]."""
     return LAYER if pressure > 0 and kind == "grains" else 0.0
 
 

@@ -1,4 +1,4 @@
-"""Beds of disks around a held intruder: random insertion, settling under gravity, and the cache; spheres at random."""
+"""Makes beds of disks around a held intruder by random insertion and settling under gravity; places spheres at random."""
 
 import sys
 from dataclasses import asdict, dataclass
@@ -15,11 +15,11 @@ from ..scenes.material import HertzHistoryMaterial
 from ..runs.progress_line import Calming
 from ..scenes.yade_march import YadeMarch
 
-RECIPE = 4  # raise it when a bed of the same parameters comes out different
+RECIPE = 4  # version of the recipe; increase it when the same parameters give a different bed
 MOST_GRAINS = 10_000_000  # some 10 GB of YADE's bodies
 INSERTION_FRACTION = 0.45  # random insertion jams near 0.547
-MOST_SPHERES = 0.36  # part of the room's volume: random insertion of equal spheres jams near 0.384
-LARGEST_OVERLAP = 0.3  # [R] where the settling of a bed is stopped
+MOST_SPHERES = 0.36  # largest volume fraction: random insertion of equal spheres jams near 0.384
+LARGEST_OVERLAP = 0.3  # [R] largest allowed overlap while a bed settles
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class BedRecipe:
     """A bed of disks on a base of disks of diameter 1 at y = 0, periodic in x, around a held clump.
 
     Lengths in grain diameters d, times in sqrt(d/g), masses in rho d^2. `beads` are rows x, y of the held clump's bead
-    centres, `outline` rows x, y of its corners; both in the scene. `rest` is the kinetic energy per grain, in m g d, at
-    which the bed counts as settled. `lid_pressure` [rho g d] is the weight over width of a `lid` on it, "rigid" or "grains".
+    centres, `outline` rows x, y of its corners, both in the coordinates of the scene. The bed counts as settled if its kinetic
+    energy per grain is below `rest` [m g d]. `lid_pressure` [rho g d] is the weight over width of the `lid`, "rigid" or "grains".
     """
 
     width: float
@@ -48,9 +48,9 @@ class BedRecipe:
 
 
 def settled_bed(recipe):
-    """Return a settled bed as a dict: x, y, r and density of its grains, shape (n,), kinetic energy per grain, deepest overlap.
+    """Return a settled bed as a dict: x, y, r, density of its grains, shape (n,), kinetic energy per grain, deepest overlap.
 
-    The same recipe gives the same bed; it is taken from the cache when it is there.
+    The same recipe gives the same bed; it is taken from the cache if possible.
     """
     return cache.cached("bed", as_plain(recipe), RECIPE, lambda: settle(recipe))
 
@@ -60,34 +60,34 @@ def random_spheres(box, fraction, d_min, d_max, seed, *, periodic="", keep_out=N
 
     `box` is (x_min, x_max, y_min, y_max, z_min, z_max); it repeats along the axes that `periodic` names, as "xy".
     `keep_out(points (m, 3))` gives signed distances (m,) to a solid, > 0 outside of it and to its nearest image where the
-    box repeats: no sphere reaches into it. Volumes of spheres, with diameters uniform in [d_min, d_max), fill `fraction` of
-    the room outside of the solid, which is measured on a grid of points. The same for a seed on every machine.
-    UsageError for a fraction that random insertion does not reach or a room without a sphere, ValueError for bad input.
+    box repeats: no sphere reaches into it. The spheres, with diameters uniform in [d_min, d_max), fill `fraction` of the volume
+    outside of the solid, which is measured on a grid of points. A seed gives the same result on every machine.
+    UsageError for a fraction that random insertion cannot reach or a room too small for a sphere, ValueError for bad input.
     """
     if not 0 < fraction <= MOST_SPHERES:
         raise UsageError(
             f"fraction must lie in (0, {MOST_SPHERES}], got {fraction:g}: random insertion of equal spheres jams at 0.384;"
-            " compress a looser packing instead"
+            " make a looser packing and compress it"
         )
-    engines.overlaps_in_space(box, periodic, np.empty((0, 3)), ())  # refuses a box that is none
+    engines.overlaps_in_space(box, periodic, np.empty((0, 3)), ())  # refuses an invalid box
     room = room_outside(np.array(box, dtype=float), keep_out)
     mean_volume = np.pi / 24 * (d_min + d_max) * (d_min**2 + d_max**2)  # pi/6 <d^3>
     count = round(fraction * room / mean_volume)
     if count < 1:
-        raise UsageError(f"a room of {room:.3g} has no place for spheres of volume {mean_volume:.3g}; enlarge the box")
+        raise UsageError(f"a volume of {room:.3g} has no room for spheres of volume {mean_volume:.3g}; enlarge the box")
     radii = engines.uniform_radii(count, d_min, d_max, seed)
     return engines.random_insertion_in_space(box, periodic, radii, seed, keep_out), radii
 
 
 def room_outside(box, keep_out, points=40):
-    """Return the volume of a box outside of a solid, by a grid of points (an error of some 1/points of the solid's own)."""
+    """Return the volume of a box outside of a solid, from a grid of points (the error is some 1/points of the solid's volume)."""
     low, side = box[::2], box[1::2] - box[::2]
     if keep_out is None:
         return np.prod(side)
     middles = np.stack(np.meshgrid(*3 * [(np.arange(points) + 0.5) / points], indexing="ij"), axis=-1).reshape(-1, 3)
     distances = np.asarray(keep_out(low + side * middles))
     if distances.shape != (len(middles),):
-        raise ValueError(f"keep_out must give one distance a point, shape (n,), got shape {distances.shape}")
+        raise ValueError(f"keep_out must return one distance per point, shape (n,), got shape {distances.shape}")
     return np.prod(side) * np.mean(distances > 0)
 
 
@@ -100,7 +100,7 @@ def as_plain(recipe):
 
 
 def count_grains(recipe):
-    """Return how many grains fill the bed; UsageError for none, or more than a run can hold."""
+    """Return the number of grains that fill the bed; UsageError if it is 0 or more than a run can hold."""
     mean_area = np.pi / 12 * (recipe.d_max**2 + recipe.d_max * recipe.d_min + recipe.d_min**2)
     count = (lid.BED_FRACTION * recipe.width * recipe.height - recipe.outline_area) / mean_area
     if count < 1:
@@ -116,13 +116,13 @@ def count_grains(recipe):
 
 
 def check_load(recipe, largest_overlap, body_load):
-    """UsageError for weights that press resting grains of 1 d further into each other than `largest_overlap` radii.
+    """Raise UsageError for weights that make resting grains of 1 d overlap by more than `largest_overlap` radii.
 
-    They are those of bed and lid at the base, and `body_load` of the body over its width [rho d g].
+    The weights are that of bed and lid at the base, and that of the body over its width, `body_load` [rho d g].
     """
     most = recipe.material.force_between(0.5, min(largest_overlap, LARGEST_OVERLAP))
     at_base = lid.weight_of_bed(recipe.height) + recipe.lid_pressure
-    bear = f"grains bear {most:.3g} rho d g at largest_overlap={largest_overlap:g} R"
+    bear = f"grains can carry only {most:.3g} rho d g at largest_overlap={largest_overlap:g} R"
     if at_base > most:
         raise UsageError(
             f"a bed of height={recipe.height:g} d under a lid of {recipe.lid_pressure:g} rho d g weighs {at_base:.3g} rho d g,"
@@ -130,7 +130,7 @@ def check_load(recipe, largest_overlap, body_load):
         )
     if body_load > most:
         raise UsageError(
-            f"a body whose mass over width is {body_load:.3g} rho d presses on grains by as many rho d g,"
+            f"a body whose mass over width is {body_load:.3g} rho d loads the grains with as many rho d g,"
             f" but {bear}; lower intruder_mass, or raise largest_overlap"
         )
 
@@ -147,7 +147,7 @@ def insert(recipe):
 
 
 def keep_clear(recipe):
-    """Return rows x, y, radius of disks that cover the intruder, so that no grain is put inside its ring of beads."""
+    """Return rows x, y, radius of disks that cover the intruder, so that no grain is placed inside its ring of beads."""
     beads, outline = np.array(recipe.beads), np.array(recipe.outline)
     ring = np.c_[beads, np.full(len(beads), recipe.bead_radius)]
     if len(outline) == 0:  # a single disk
@@ -156,7 +156,7 @@ def keep_clear(recipe):
 
 
 def settle(recipe):
-    """Insert the grains, let them fall until they rest, lay the lid on them and let them rest again; return the bed.
+    """Insert the grains, let them settle, lay the lid on them and let them settle again; return the bed.
 
     Under a rigid lid the bed also holds `lid_y`, the height of the lid's centres.
     """
@@ -172,9 +172,9 @@ def settle(recipe):
 
 
 def come_to_rest(recipe, x, y, r, density, lid_y=None, under=""):
-    """Let grains fall until they rest, on the fast loop, under a rigid lid at `lid_y` if that is given; return the bed.
+    """Let grains fall until they are at rest, on the fast loop, under a rigid lid at `lid_y` if it is given; return the bed.
 
-    A person is told what they settle `under`.
+    `under` is a text on the lid for the progress message.
     """
     from yade import O
 
@@ -186,7 +186,7 @@ def come_to_rest(recipe, x, y, r, density, lid_y=None, under=""):
     )
     ids = scene.add_disks(x, y, r, density)
     print(
-        f"settling a bed of {len(ids)} grains{under} until they keep less than {recipe.rest:g} m g d each",
+        f"settling a bed of {len(ids)} grains{under} until each has less than {recipe.rest:g} m g d of kinetic energy",
         file=sys.stderr,
     )
     rigid = None if lid_y is None else lid.add_rigid(recipe.width, lid_y, recipe.lid_pressure)
@@ -201,7 +201,7 @@ def come_to_rest(recipe, x, y, r, density, lid_y=None, under=""):
 
 
 def deepest_overlap(recipe, bed):
-    """Return the deepest overlap of a settled bed's grains [smaller radius]; RuntimeError if it is not one of grains at rest."""
+    """Return the deepest overlap of a settled bed's grains [smaller radius]; RuntimeError if it is too deep for a bed at rest."""
     box = (0.0, recipe.width, -1.0, float(bed["y"].max()) + 1)
     deepest, i, j = engines.overlaps(box, True, np.c_[bed["x"] % recipe.width, bed["y"]], bed["r"])
     if deepest > 0.1:
@@ -212,10 +212,10 @@ def deepest_overlap(recipe, bed):
 
 
 def run_until_at_rest(recipe, ids, density, fall_time):
-    """Run in blocks of a time unit until the kinetic energy per grain is below `rest` m g d; return that energy.
+    """Run in blocks of one time unit until the kinetic energy per grain is below `rest` m g d; return that energy.
 
-    It is not asked before the highest grain could have fallen. A bed that does not come to rest in 50 times as long
-    raises RuntimeError: its energy input (a time step too long, grains inside the intruder) has to be found.
+    The energy is checked only after the time in which the highest grain falls down. A bed that does not come to rest in
+    50 times that time raises RuntimeError: something gives it energy (too long a time step, grains inside the intruder).
     """
     from yade import O
 
@@ -238,7 +238,7 @@ def run_until_at_rest(recipe, ids, density, fall_time):
 def kinetic_energy_per_grain(grains, density):
     """Return the mean kinetic energy, translation and rotation, over the mean m g d of the grains (g = d = 1).
 
-    `density` is one for all or of shape (n,).
+    `density` is one number for all grains, or of shape (n,).
     """
     mass = density * np.pi * grains["r"] ** 2
     energy = mass / 2 * (grains["vx"] ** 2 + grains["vy"] ** 2 + grains["r"] ** 2 / 2 * grains["spin"] ** 2)

@@ -1,4 +1,4 @@
-"""A periodic cell of disks, sheared homogeneously under a pressure or at an area fraction: scene, loop, what it measures.
+"""A periodic cell of disks, sheared homogeneously at constant pressure or area fraction: scene, loop and measured means.
 
 Units are d, rho, g: a disk of diameter d has the mass pi/4.
 """
@@ -17,10 +17,10 @@ from ..scenes.material import MOST_CONTACTS, SpringDashpotMaterial, critical_tim
 DENSITY = 1.0  # rho
 MASS = math.pi / 4  # of a disk of diameter d [rho d^2]
 SMALLEST, LARGEST = 1.0, 1.2  # d, diameters are uniform between them
-SPACING = 1.22  # d, of the square lattice that disks begin on
-JITTER = 0.02  # d, at most, in x and y
-ASPECT = 1.3  # rows over columns at first; the pressure makes the cell about square
-CLOSING_RATE = 0.1  # sqrt(g/d), |dL/dt|/L at which a cell goes to its area fraction
+SPACING = 1.22  # d, of the initial square lattice
+JITTER = 0.02  # d, largest random shift of a disk along x and y
+ASPECT = 1.3  # initial rows over columns; the pressure then makes the cell about square
+CLOSING_RATE = 0.1  # sqrt(g/d), |dL/dt|/L while a cell approaches its area fraction
 LABEL = "shear"
 NAMES = (
     *("contact_sxx", "contact_sxy", "contact_syx", "contact_syy"),
@@ -31,7 +31,7 @@ NAMES = (
 
 @dataclass(frozen=True)
 class ShearCell:
-    """How a sheared cell is made; `pressure` > 0 or `area_fraction` > 0 says what is held. Stiffness in m g/d."""
+    """Recipe for a sheared cell with constant `pressure` > 0 or constant `area_fraction` > 0. Stiffness in m g/d."""
 
     grains: int
     stiffness: float
@@ -53,7 +53,7 @@ class ShearCell:
         return dict(normalStiffness=self.k_n, tangentialStiffness=self.k_n * 2 / 7, restitution=self.restitution)
 
     def check(self, dt, largest_overlap):
-        """Return the time step over the critical one of two smallest disks; UsageError over 1 or for grains that are too soft."""
+        """Return dt/dt_crit for two smallest disks; UsageError if it is over 1 or if the grains are too soft."""
         critical = self.critical_time_step()
         if dt > critical:
             raise UsageError(
@@ -62,17 +62,17 @@ class ShearCell:
         scene.require_bed_bears(dt, self.critical_time_step(MOST_CONTACTS))
         if self.pressure > (most := self.k_n * largest_overlap / 4):
             raise UsageError(
-                f"pressure={self.pressure:g} presses grains too far into each other; take at most {most:.3g}, or raise stiffness"
+                f"pressure={self.pressure:g} makes grains overlap too far; give at most {most:.3g}, or raise stiffness"
             )
         return dt / critical
 
     def critical_time_step(self, contacts=1):
-        """Return the largest stable step of two smallest disks; with several `contacts` as `critical_time_step_of_disks`."""
+        """Return the largest stable step of two smallest disks; `contacts` is as in `critical_time_step_of_disks`."""
         grains = SpringDashpotMaterial(self.k_n, self.k_n * 2 / 7, self.restitution, self.friction, DENSITY)
         return critical_time_step_of_disks(grains, SMALLEST / 2, 1e-3, contacts)
 
     def build(self, dt, loop, *, precision, largest_overlap):
-        """Put disks, drive and the loop ("grain" or "yade") into YADE, at rest but for a little noise."""
+        """Put disks, drive and the loop ("grain" or "yade") into YADE; disks have only small random velocities."""
         from yade import O
         from yade import wrapper as w
 
@@ -120,9 +120,9 @@ class ShearCell:
 
 
 def means():
-    """Return the drive's means since they were last asked for, and begin anew.
+    """Return the drive's means since the last call, and reset them.
 
-    A dict of the numbers of `NAMES` and the cell's `height`, and `profile` (bins,): the mean of v_x against the mean flow.
+    A dict of the numbers of `NAMES`, the cell's `height`, and `profile` (bins,): the mean of v_x relative to the mean flow.
     """
     from yade import O
 
@@ -136,7 +136,7 @@ def means():
 
 
 def keep_upright():
-    """Flip YADE's cell back where it leans over by more than half its width: its own collider searches leaning cells badly."""
+    """Flip YADE's cell back if it is tilted by more than half its width: YADE's collider handles strongly tilted cells badly."""
     from yade import O
 
     if scene.fast_loop() is None and O.cell.hSize[0][1] > O.cell.hSize[0][0] / 2:

@@ -1,4 +1,4 @@
-"""Beds of spheres around a held solid, poured in two portions, under a lid of heavy grains if wanted, and brought to rest.
+"""Makes beds of spheres at rest around a held solid, poured in two portions, optionally under a lid of heavy grains.
 
 As in Guillard, Forterre, Pouliquen 2014: grains are poured up to the solid, the solid is put in, more are poured; then
 a lid of heavy grains, a square lattice, is laid on them.
@@ -19,16 +19,18 @@ from ..scenes.material import HertzRestitutionSpheres
 from ..runs.progress_line import Calming
 from ..scenes.yade_march import YadeMarch
 
-RECIPE = 1  # raise it when a bed of the same parameters comes out different
-BED_FRACTION = 0.59  # volume fraction with which the number of grains is reckoned
+RECIPE = 1  # version of the recipe; increase it when the same parameters give a different bed
+BED_FRACTION = 0.59  # volume fraction from which the number of grains is computed
 INSERTION_FRACTION = 0.33
-LARGEST_OVERLAP = 0.3  # [R] where settling is stopped: a tall column that lands presses its foot hard
-LOOK_EVERY = 100  # steps between two looks at a bed that comes to rest
+LARGEST_OVERLAP = (
+    0.3  # [R] largest allowed overlap while a bed settles: a tall column that lands loads its foot heavily
+)
+LOOK_EVERY = 100  # steps between two checks of a bed that comes to rest
 LOAD_ERROR = (
-    1e-3  # of the weight, by which the forces on base and solid may miss it, or the weight of a grain that still rolls
+    1e-3  # allowed relative error of the forces on base and solid, at least the weight of one grain that may still roll
 )
 POURED_ERROR = 5e-3  # the same while a bed is poured
-LOOKS_BORNE = 3  # looks, one after another, at which they must not
+LOOKS_BORNE = 3  # number of successive checks in which the error must be allowed
 MOST_LOOKS = 1000
 MOST_GRAINS = 5_000_000
 
@@ -37,9 +39,9 @@ MOST_GRAINS = 5_000_000
 class SphereBed:
     """A bed of spheres on a base at z = 0 around a held solid, lengths in m.
 
-    The solid, `surface` in words, lies at (width/2, breadth/2, axis), from `bottom` [m] below the axis on, and takes `volume`
-    of the bed, which is `height` high. `gravity` [m/s^2]; `dt` [s] of the pouring; `rest` is the kinetic energy per grain
-    over m g d at which the bed counts as at rest.
+    The solid, given by the text `surface`, lies at (width/2, breadth/2, axis), reaches down to `bottom` [m] below the axis, and
+    takes `volume` of the bed, which is `height` high. `gravity` [m/s^2]; `dt` [s] of the pouring. The bed counts as at rest if
+    its kinetic energy per grain over m g d is below `rest`.
     """
 
     width: float
@@ -60,7 +62,7 @@ class SphereBed:
 
     @property
     def centre(self):
-        """Where the solid's origin lies, (3,) [m]."""
+        """Position of the solid's origin, (3,) [m]."""
         return np.array([self.width / 2, self.breadth / 2, self.axis])
 
     @property
@@ -69,7 +71,7 @@ class SphereBed:
         return np.pi / 24 * (self.d_min + self.d_max) * (self.d_min**2 + self.d_max**2)
 
     def counts(self):
-        """Return how many grains lie below the solid's lowest point, and how many above it."""
+        """Return the number of grains below the solid's lowest point, and the number above it."""
         area = self.width * self.breadth
         below = BED_FRACTION * area * (self.axis - self.bottom) / self.grain_volume
         above = BED_FRACTION * (area * (self.height - self.axis + self.bottom) - self.volume) / self.grain_volume
@@ -78,7 +80,7 @@ class SphereBed:
 
 @dataclass(frozen=True)
 class Lid:
-    """A square lattice of grains of diameter d and `density` [kg/m^3], free along z alone (`turns`: they may also rotate).
+    """A square lattice of grains of diameter d and `density` [kg/m^3], free only along z (with `turns` they may also rotate).
 
     With `bulk_gravity` False the grains below have no weight.
     """
@@ -89,10 +91,10 @@ class Lid:
 
 
 def check(bed):
-    """UsageError for a bed with too few grains on one side of the solid, or with more than a run can hold."""
+    """Raise UsageError for a bed with too few grains below or above the solid, or with more than a run can hold."""
     below, above = bed.counts()
     if min(below, above) < 1:
-        raise UsageError(f"a bed with {below} grains below the body and {above} above it is none; enlarge the box")
+        raise UsageError(f"a bed with {below} grains below the body and {above} above it is too small; enlarge the box")
     if below + above > MOST_GRAINS:
         raise UsageError(
             f"the bed has {below + above:.3g} grains, more than {MOST_GRAINS:.0e}; lower width, breadth or height"
@@ -100,15 +102,15 @@ def check(bed):
 
 
 def poured(bed):
-    """Return a settled bed as a dict: centres x (n, 3) and radii r (n,) [m]; from the cache if it is there."""
+    """Return a settled bed as a dict: centres x (n, 3) and radii r (n,) [m]; from the cache if possible."""
     return cache.cached("spheres", asdict(bed), RECIPE, lambda: pour(bed))
 
 
 def at_rest(bed, lid):
-    """Return a settled bed under its lid, at rest, as a dict; from the cache if it is there.
+    """Return a settled bed under its lid, at rest, as a dict; from the cache if possible.
 
-    x (n, 3), r (n,) of its grains and lid (m, 3), centres [m]; springs and wall_springs of the contacts as GrainLoop has
-    them for the bodies of `build`; load_error: how far the forces on base and solid miss the weight, over the weight.
+    x (n, 3), r (n,) of its grains and lid (m, 3), centres [m]; springs and wall_springs of the contacts in GrainLoop's
+    form, for the bodies of `build`; load_error: difference between the forces on base and solid and the weight, over the weight.
     """
     key = dict(bed=asdict(bed), lid=asdict(lid))
     return cache.cached("spheres-at-rest", key, RECIPE, lambda: rest_under(bed, lid, poured(bed)))
@@ -132,7 +134,7 @@ def pour(bed):
 
 
 def image_distance(bed, surface):
-    """Return the function of points (n, 3) that gives their distance to the solid's nearest image."""
+    """Return a function that takes points (n, 3) and returns their distances to the solid's nearest image."""
     period = np.array([bed.width, bed.breadth])
 
     def distance(points):
@@ -144,7 +146,7 @@ def image_distance(bed, surface):
 
 
 def inserted(bed, count, low, keep_out, volume, seed):
-    """Return centres (n, 3) and radii (n,) of about `count` spheres placed at random from the height `low` on."""
+    """Return centres (n, 3) and radii (n,) of about `count` spheres placed at random above the height `low`."""
     room = count * bed.grain_volume / INSERTION_FRACTION
     high = low + (room + volume) / (bed.width * bed.breadth) + 2 * bed.d_max
     box = (0, bed.width, 0, bed.breadth, low, high)
@@ -186,14 +188,14 @@ def build(bed, lid, x, r, lid_at):
 
 
 def lid_above(bed, lid, x, r):
-    """Return the centres (m, 3) of the lid's grains before they come down; none for a lid of no weight."""
+    """Return the initial centres (m, 3) of the lid's grains, above the bed; none for a lid without weight."""
     if lid.density == 0:
         return np.zeros((0, 3))
     return space.lattice(bed.width, bed.breadth, bed.d, float((x[:, 2] + r).max()) + bed.d / 2)
 
 
 def weight_on_lid(bed, lid):
-    """Return the force (3,) [N] on each of the lid's grains where gravity acts on them alone."""
+    """Return the force (3,) [N] on each of the lid's grains if gravity acts only on the lid."""
     return (0.0, 0.0, -lid.density * np.pi / 6 * bed.d**3 * bed.gravity)
 
 
@@ -214,11 +216,11 @@ def rest_under(bed, lid, arrays):
 
 
 def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=None):
-    """Run on GrainLoop until the grains are at rest and base and solid bear the weight; return by how much they miss it.
+    """Run on GrainLoop until the grains are at rest and base and solid carry the weight; return the relative error.
 
-    A bed under a heavy lid swings for long, for contacts damp slow motion by little. So whenever the force on base and solid
-    passes through the weight, all motion is stopped: there the kinetic energy of the swing is largest. RuntimeError for a bed
-    that does not come to rest.
+    A bed under a heavy lid oscillates for long, because contacts damp slow motion little. So all motion is stopped whenever the
+    force on base and solid passes through the weight: there the kinetic energy of the oscillation is largest. RuntimeError for a
+    bed that does not come to rest.
     """
     from yade import O
 
@@ -247,23 +249,29 @@ def come_to_rest(bed, base, solid, ids, lids, gravity, fall_time, label, lid=Non
     progress.run_blocks(YadeMarch(len(ids)), most, LOOK_EVERY, look, label=label, aim=aim)
     if not (aim.energy < bed.rest and state.borne >= LOOKS_BORNE):
         raise RuntimeError(
-            f"the bed does not come to rest: {aim.energy:.2g} m g d of kinetic energy per grain, the forces on base and body"
-            f" miss the weight by {state.error:.2g} of it; lower dt_factor or lid_density"
+            f"the bed does not come to rest: kinetic energy {aim.energy:.2g} m g d per grain, the forces on base and body"
+            f" differ from the weight by {state.error:.2g} of it; lower dt_factor or lid_density"
         )
     space.halt()
-    print(f"{label}: {len(ids)} grains at rest, the weight is borne to {state.error:.1e}", file=sys.stderr)
+    print(
+        f"{label}: {len(ids)} grains at rest, base and body carry the weight to within {state.error:.1e}",
+        file=sys.stderr,
+    )
     return state.error
 
 
 class Swing:
-    """What is borne of a weight: the `error` over it, for how many looks it was `allowed`, whether it just passed the weight."""
+    """The force that base and solid carry: its relative `error`, and whether it has just passed through the weight.
+
+    `borne` counts the successive checks in which the error was at most `allowed`.
+    """
 
     def __init__(self, weight, allowed):
         self.weight, self.allowed = weight, allowed
         self.error, self.borne, self.passes_the_weight = -1.0, 0, False
 
     def see(self, force):
-        """Note the force that is borne now."""
+        """Note the present force."""
         error = force / self.weight - 1
         farthest = max(abs(error), abs(self.error))
         self.borne = self.borne + 1 if farthest < self.allowed else 0
@@ -280,26 +288,26 @@ def total_weight(bed, ids, lids, gravity, lid):
 
 
 def scene_threads():
-    """Return the threads that pay for the present scene: as many as YADE has, but one for every 20,000 spheres."""
+    """Return the useful number of threads for the present scene: at most YADE's, and one per 20,000 spheres."""
     from yade import O
 
     return min(O.numThreads, 1 + len(O.bodies) // 20_000)
 
 
-# ---- what a bed is -----------------------------------------------------------------------------------------------
+# ---- properties of a bed -----------------------------------------------------------------------------------------
 
 
 def fraction_by_height(z, r, edges, area):
     """Return the volume fraction of spheres in slabs between heights `edges` (m + 1,) of a box of `area`, shape (m,).
 
-    Exact: a sphere has pi t^2 (r - t/3) of its volume below z - r + t.
+    This is exact: a sphere has the volume pi t^2 (r - t/3) below z - r + t.
     """
     below = np.array([np.sum(cap(edge - z, r)) for edge in edges])
     return np.diff(below) / (np.diff(edges) * area)
 
 
 def cap(above_centre, r):
-    """Return the volume of spheres of radius r below a plane `above_centre` over their centres."""
+    """Return the volume of spheres of radius r below a plane that is `above_centre` above their centres."""
     t = np.clip(above_centre + r, 0, 2 * r)
     return np.pi * t**2 * (r - t / 3)
 
@@ -308,11 +316,11 @@ FACTS = ("bulk_fraction", "effective_depth", "bed_weight", "lid_weight")
 
 
 def facts(bed, lid, found):
-    """Return what a bed at rest (`at_rest`) is and weighs, a dict of `FACTS`.
+    """Return properties and weights of a bed at rest (`at_rest`), a dict of `FACTS`.
 
     bulk_fraction is the volume fraction away from base and surface, without the solid. effective_depth [m] is the weight of
-    all grains above the solid's origin, the solid's upper part taken as filled with grains, over that of a unit of
-    bed: h + (pi d/6) rho*/rho of Guillard et al. for a lid with a grain on each d^2. Weights in N, as gravity acts.
+    all grains above the solid's origin, with the solid's upper part counted as filled with grains, over the weight of bed per
+    unit depth: h + (pi d/6) rho*/rho of Guillard et al. for a lid with one grain per d^2. Weights in N.
     """
     z, r, area = found["x"][:, 2], found["r"], bed.width * bed.breadth
     volumes = 4 / 3 * np.pi * r**3

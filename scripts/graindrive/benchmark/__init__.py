@@ -1,1 +1,1 @@
-"""Speed of GrainLoop against LAMMPS and YADE's loop, on scenes that are first shown to compute the same thing."""
+"""Compares the speed of GrainLoop with LAMMPS and YADE's loop, on scenes for which all codes give the same results."""

@@ -5,13 +5,13 @@ usage: scripts/bench [--json] [--scene NAME | --features] [--quick] [--threads N
   --json        a list of {scene, law, precision, threads, kernel, peer, ours, theirs, ratio}, rates in particle-steps/s
   --scene NAME  one of bed10k magnus_dilute magnus_dense wiggle63k drum150 (disks), lift20k lift190k lift_flow (spheres),
                 continuum drum_newtonian; without it all of them, in that order
-  --features    what friction, gravity, walls, the ledger, measures, the third dimension, ... cost GrainLoop in one scene: time
-                per particle-step with each over that without it, median, lowest and highest of the rounds
+  --features    cost of friction, gravity, walls, the ledger, measures, the third dimension, ... in one scene of GrainLoop: time
+                per particle-step with each feature over that without it, median, lowest and highest of the rounds
   --quick       short runs of that scene, by default of bed10k: about a minute once it is in the cache,
                 half as long again for lift190k
   --threads N   largest number of threads (and of LAMMPS's ranks) to compare; 2 by default
-  --kernel NAME instructions that GrainLoop runs on: avx512, avx2 or portable; by default the best of this processor
-  --lammps COMMAND  another LAMMPS than Debian's `lmp`, such as one built for this processor
+  --kernel NAME instruction set of GrainLoop: avx512, avx2 or portable; by default the best of this processor
+  --lammps COMMAND  a LAMMPS other than Debian's `lmp`, for example one built for this processor
 
 Spheres are those of the lift study: 20,000 and 190,000 settled, and the 20,000 flowing down 24 degrees. Their energies are
 compared after 300 steps, with friction and without it, before a ratio is printed.
@@ -20,8 +20,8 @@ The continuum is the drum study's on 107^2 and 400^2 cells; its rates are cell-s
 drum_newtonian is a half full drum of a Newtonian fluid beside OpenFOAM's interFoam (Debian's package openfoam, which
 scripts/setup leaves to you: 0.4 GB): cell-steps per second on one grid, then costs at equal error of the velocity.
 
-One core: particle-steps per second of processor time, so that a busy machine does not count; several: of wall time. A scene
-whose kinetic energies differ after 300 steps (LIGGGHTS: the first portion) gets no ratio.
+On one core, rates are particle-steps per second of processor time, so that a busy machine does not matter; on several cores, of
+wall time. A scene whose kinetic energies differ after 300 steps (LIGGGHTS: after the first portion) gets no ratio.
 """
 
 import argparse
@@ -51,17 +51,15 @@ SAME = {"hertzHistory": 1e-5, "springDashpot": 0.05, "hertzRestitution": 1e-3}
 # without friction by 1e-13. Hence two comparisons: with friction, and of the same scene without it. In the first step of a scene
 # that moves LIGGGHTS differs by up to 3e-4 after the first steps, and no more later; why has not been found.
 SAME_SPHERES, SAME_SMOOTH_SPHERES, SAME_SMOOTH_FLOW_IN_LIGGGHTS = 0.05, 1e-9, 1e-3
-SAME_ON_YADES_LOOP = 1e-5  # the same law, by the same formulas
+SAME_ON_YADES_LOOP = 1e-5  # the same law with the same formulas
 WARM_UP = 10  # steps
 FLOWS = (continuum.NAME, drum_newtonian.NAME)
-OWN_SHARE = (
-    6  # GrainLoop's portions of spheres have so many times a peer's steps: beside it they are short, and show the cost
-)
+OWN_SHARE = 6  # GrainLoop's portions of spheres have this many times the peer's steps; otherwise they would be short, and show the cost
 # with which O.run begins and ends, 0.3 s for 190,000 bodies
-YADE_SHARE = 100  # YADE's loop gets a hundredth of the steps
-COMPARED = 300  # steps after which energies are compared: chaos parts round-off of dense flows soon after
+YADE_SHARE = 100  # YADE's loop runs a hundredth of the steps
+COMPARED = 300  # steps after which energies are compared: soon after, chaos amplifies round-off in dense flows
 
-# What each scene is timed against.
+# The codes with which each scene is compared.
 PLAN = {
     "bed10k": ("lammps", "liggghts", "single", "yade"),
     "magnus_dilute": ("lammps", "binned"),
@@ -75,23 +73,23 @@ PLAN = {
 
 
 class Ours:
-    """A scene in a process of its own, on GrainLoop ("grain") or on YADE's loop ("yade")."""
+    """A scene in a separate process, on GrainLoop ("grain") or on YADE's loop ("yade")."""
 
     def __init__(self, path, which, **settings):
         command = [sys.executable, "-m", "graindrive.benchmark.ours", path, which, json.dumps(settings)]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def run(self, steps):
-        """Go on by some steps; return what the worker says."""
+        """Run some steps; return the worker's answer."""
         self.process.stdin.write(f"{steps}\n")
         self.process.stdin.flush()
         for line in self.process.stdout:
             if line.startswith("{"):
                 return json.loads(line)
-        raise RuntimeError("the worker that runs GrainLoop or YADE's loop died; its words are above")
+        raise RuntimeError("the worker that runs GrainLoop or YADE's loop died; its messages are above")
 
     def warm_up(self):
-        """Take the first steps, in which a loop reads its bodies."""
+        """Run the first steps, in which a loop reads its bodies."""
         self.run(WARM_UP)
 
     def close(self):
@@ -100,12 +98,12 @@ class Ours:
 
 
 def rate(result, particles, steps, threads):
-    """Return particle-steps per second: of processor time on one core, of wall time on several."""
+    """Return particle-steps per second, of processor time on one core, of wall time on several cores."""
     return particles * steps / result["cpu" if threads == 1 else "wall"]
 
 
 def differs(ours, theirs, tolerance):
-    """Return why two kinetic energies are not of the same scene, or None."""
+    """Return why two kinetic energies do not agree, or None if they do."""
     difference = abs(ours - theirs) / max(abs(theirs), 1e-300)
     return (
         None
@@ -115,7 +113,7 @@ def differs(ours, theirs, tolerance):
 
 
 def row(name, a_scene, threads, kernel, peer, ours, theirs, precision="double"):
-    """Return one line of the table from lists of rates taken alternately; `kernel` is what a worker said of itself."""
+    """Return one line of the table from lists of rates measured alternately; `kernel` is the worker's instruction set."""
     ratios = [a / b for a, b in zip(ours, theirs)]
     return dict(
         scene=name,
@@ -131,7 +129,7 @@ def row(name, a_scene, threads, kernel, peer, ours, theirs, precision="double"):
 
 
 def tolerance(a_scene):
-    """Return the largest relative difference of kinetic energies, with friction, at which peers compute the same scene."""
+    """Return the largest allowed relative difference of kinetic energies, with friction."""
     return SAME_SPHERES if layout.in_space(a_scene) else SAME[str(a_scene["law"])]
 
 
@@ -142,7 +140,7 @@ def tolerance_when_smooth(peer_name, a_scene):
 
 
 def differs_when_smooth(peer_name, run, a_scene, folder, threads, compared):
-    """Return why a peer does not compute a scene without friction as we do, or None."""
+    """Return why a peer's result for a scene without friction differs from ours, or None if it does not."""
     smooth = dict(a_scene, friction=0.0)
     worker = Ours(save(smooth, folder, "smooth.npz"), "grain", threads=threads)
     try:
@@ -154,7 +152,7 @@ def differs_when_smooth(peer_name, run, a_scene, folder, threads, compared):
 
 
 def against(peer_name, run, name, a_scene, path, threads, rounds, steps, compared=COMPARED):
-    """Return the row against a peer; None, with the reason on standard error, if it differs.
+    """Return the row of the comparison with a peer; None, with the reason on stderr, if the results differ.
 
     `run(scene, steps)` runs the peer from the start of the scene, or of the same scene without friction. Energies are compared
     after `compared` steps.
@@ -180,7 +178,7 @@ def against(peer_name, run, name, a_scene, path, threads, rounds, steps, compare
 
 
 def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
-    """Yield the rows against LAMMPS on as many ranks as threads."""
+    """Yield the rows of the comparison with LAMMPS on as many ranks as threads."""
     if not lammps.available():
         print("LAMMPS is not installed (Debian's package lammps); no ratio against it", file=sys.stderr)
         return
@@ -192,10 +190,10 @@ def against_lammps(name, a_scene, path, folder, threads, rounds, steps):
 
 
 def against_liggghts(name, a_scene, folder, rounds, steps):
-    """Yield the row of the same bed under the law that LIGGGHTS has.
+    """Yield the row of the same bed with the law of LIGGGHTS.
 
-    Energies of disks are compared after the first portion: LIGGGHTS's first steps, in which the bed takes up another law, differ
-    by more than those after them.
+    Energies of disks are compared after the first portion: in LIGGGHTS's first steps, while the bed adapts to another law, they
+    differ by more than later.
     """
     if not liggghts.available():
         print("LIGGGHTS is not installed (Debian's package liggghts); no ratio against it", file=sys.stderr)
@@ -209,7 +207,7 @@ def against_liggghts(name, a_scene, folder, rounds, steps):
 
 
 def against_yade(name, a_scene, path, rounds, steps):
-    """Return the row against YADE's own loop on one core."""
+    """Return the row of the comparison with YADE's own loop on one core."""
     few = max(10, steps // YADE_SHARE)
     twin, own, peer = Ours(path, "grain", onStep=False), Ours(path, "grain", onStep=False), Ours(path, "yade")
     ours, theirs, particles = [], [], len(a_scene["x"])
@@ -229,7 +227,7 @@ def against_yade(name, a_scene, path, rounds, steps):
 
 
 def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="double", threads=1, **settings):
-    """Return the row of GrainLoop with other `settings` against GrainLoop as it is; both by wall time on several threads."""
+    """Return the row of GrainLoop with other `settings` over GrainLoop without them; wall time on several threads."""
     other, plain = Ours(path, "grain", precision=precision, threads=threads, **settings), Ours(path, "grain")
     particles = len(a_scene["x"])
     try:
@@ -242,7 +240,7 @@ def against_ourselves(name, a_scene, path, rounds, steps, peer, precision="doubl
 
 
 def against_small_bed(name, a_scene, path, rounds, steps, folder, small_name):
-    """Return the row of a large bed against our own rate on a small one, which gets as many particle-steps."""
+    """Return the row of a large bed over our own rate on a small bed, with as many particle-steps."""
     small = scene(small_name)
     small_path = save(small, folder, "small.npz")
     times = round(len(a_scene["x"]) / len(small["x"]))
@@ -265,7 +263,7 @@ def save(a_scene, folder, file_name):
 
 
 def portions(a_scene, quick):
-    """Return how many portions are timed, and the steps of each: fewer of scenes that cost more.
+    """Return the number of timed portions and the steps of each; expensive scenes get fewer.
 
     A peer's step of a sphere takes up to half a microsecond, and quick runs of spheres are mostly spent on comparing energies.
     """
@@ -316,7 +314,7 @@ def print_row(entry):
 
 
 def print_features(quick, as_json):
-    """Measure what features cost; print them line by line or as JSON; return the exit status."""
+    """Measure the cost of features; print it line by line or as JSON; return the exit status."""
     rounds, steps, rows = (3, 100, []) if quick else (9, 300, [])
     if not as_json:
         print(features.HEADING, flush=True)
@@ -357,7 +355,7 @@ def main(arguments=None):
         lammps.command = os.path.abspath(shutil.which(chosen.lammps))
     if chosen.features:
         if chosen.scene:
-            parser.error(f"--features has a scene of its own; leave --scene {chosen.scene} away")
+            parser.error(f"--features has its own scene; leave --scene {chosen.scene} out")
         return print_features(chosen.quick, chosen.json)
     names = [chosen.scene] if chosen.scene else ["bed10k"] if chosen.quick else [*SCENES, *FLOWS]
     if not chosen.json:

@@ -1,4 +1,4 @@
-"""Times the continuum solver on the drum of Oba, Otsuki (2025): cells per second and shares, against grid and solver."""
+"""Times the continuum solver on the drum of Oba, Otsuki (2025): cell-steps per second for several grids and settings."""
 
 import statistics
 import sys
@@ -7,17 +7,17 @@ import time
 from ..continuum import drum_continuum
 
 NAME, LAW = "continuum", "mu_i"
-TURNED = 0.35  # rad by which a drum has turned before it is timed: its surface flows
-SPIN_UP_STEP = 0.02  # sqrt(d/g), with which it gets there
+TURNED = 0.35  # rad by which a drum has turned before it is timed, so that its surface flows
+SPIN_UP_STEP = 0.02  # sqrt(d/g), time step of this start
 PAPERS_STEP, PAPERS_SOLVER = 1e-4, "bicgstab"
 PAPERS_VISCOSITY = 8000.0  # m sqrt(g/d)
-FINE_STEP = 1e-5  # on the large grid, where the paper's is above the bound of the explicit viscosity
+FINE_STEP = 1e-5  # on the large grid, where the paper's step is above the stability limit of the explicit viscosity
 LARGE = 368  # cells across, 400 with the shell
 PARTS = "material forces pressure viscosity surface".split()
 
 
 class Drum:
-    """A flow on the paper's drum of 150 d, `cells` across it, that has begun to flow; `size` counts its cells."""
+    """A flow in the paper's drum of 150 d, with `cells` across it, after its start; `size` is its number of cells."""
 
     def __init__(self, study, cells, turned=TURNED, **keys):
         known = study.parameters.__fields__
@@ -26,7 +26,7 @@ class Drum:
         self.size = self.flow.fraction.size
 
     def rate(self, steps):
-        """Go on by so many steps; return cell-steps per second of processor time."""
+        """Advance by `steps` steps; return cell-steps per second of processor time."""
         start = time.process_time()
         self.flow.advance(steps)
         return self.size * steps / (time.process_time() - start)
@@ -39,12 +39,12 @@ class Drum:
 
 
 def started(p, turned):
-    """Return the flow of the parameters `p` with the state that a coarse time step brought it to; same grid, same fluids."""
+    """Return a flow with the parameters `p` in the state that it reached with a coarse time step; same grid, same fluids."""
     quick = drum_continuum.flow_of(p.copy(update=dict(continuum_dt=SPIN_UP_STEP, viscosity="full", pressure_solver="")))
     quick.advance(int(turned / (p.omega * SPIN_UP_STEP)))
     flow = drum_continuum.flow_of(p)
     flow.restore({**quick.state(), "time": 0.0, "steps": 0})
-    flow.advance(5)  # the first steps take up the other time step
+    flow.advance(5)  # in the first steps the flow adapts to the other time step
     return flow
 
 

@@ -1,12 +1,12 @@
 """Times a drum half full of a Newtonian fluid in our continuum and in OpenFOAM's interFoam, at equal error of u(z).
 
 R, g and the fluid's density are 1, Re = Omega R^2/nu = 1, Omega^2 R/g = 4e-4: the surface tilts by a tenth of a degree, and
-inertia and tilt change the velocity on the line normal to it by their squares only. There `exact` is what either should find,
-and errors are those against it. Both start from rest and stop at END, thirty times the slowest decay of the flow.
+inertia and tilt change the velocity on the line normal to it only to second order. `exact` is the solution on this line, and
+errors are differences from it. Both codes start from rest and stop at END, thirty times the slowest decay time of the flow.
 
-Neither is wholly steady then. On coarse grids the cells at the surface, which hold some of both fluids, go on slowing down
-between the contact lines: from END to its double the error of 28 cells grows from 10 to 12 % in ours and falls from 7 to 5 % in
-interFoam, whose surface is too fast at first.
+Neither flow is fully steady then. On coarse grids the cells at the surface, which hold both fluids, continue to slow down
+between the contact lines: from END to twice END the error with 28 cells grows from 10 to 12 % in our solver and falls from 7 to
+5 % in interFoam, whose surface is too fast at first.
 """
 
 import statistics
@@ -24,12 +24,14 @@ from . import interfoam
 
 NAME, LAW = "drum_newtonian", "newtonian"
 END = 60.0  # sqrt(R/g)
-# Cells across the drum, and the largest step [sqrt(R/g)] that costs no accuracy worth the time.
+# Cells across the drum, and the largest step [sqrt(R/g)] without a relevant loss of accuracy.
 OURS = {28: 0.2, 40: 0.2, 56: 0.2, 80: 0.2, 112: 0.2, 160: 0.1}
 THEIRS = {28: 0.4, 40: 0.4, 56: 0.4, 80: 0.4}
-QUICK = 3, 2  # so many of either, the coarsest
+QUICK = 3, 2  # number of grids of each code with --quick, the coarsest ones
 SAME_GRID = 40
-TRANSITION = 1  # half width of our wall's, in cells: the drum study's, 2, as the paper, is 1 % less exact on 56 cells
+TRANSITION = (
+    1  # half width of our wall's transition, in cells; 2, as in drum study and paper, is 1 % less exact on 56 cells
+)
 SHELL = 4  # cells around our drum
 DEPTHS = np.arange(1, 19) * 0.05  # from the axis, in radii: from below the surface to the wall's transition
 MIDDLE = 0.5  # radii to either side of the axis, within which the surface is a straight line
@@ -38,16 +40,16 @@ MIDDLE = 0.5  # radii to either side of the axis, within which the surface is a 
 def exact(depth):
     """Return u/(Omega R) along the wall's motion at depths [radii] below the axis, on the line normal to the surface.
 
-    Stokes flow in half a disc under a surface without friction is that in the whole disc, whose other half mirrors it: its wall
-    turns against the first. So u_theta = -(4/pi) sum of sin(n theta)/n over odd n at r = 1, psi = sum of a_n (r^n - r^(n+2))
-    sin(n theta), a_n = -2/(pi n), and at theta = -pi/2 the sums are those of 1/(1 + r^2) and arctan r.
+    Stokes flow in half a disc under a frictionless surface equals the flow in a whole disc whose other half is its mirror image,
+    with a wall that turns in the opposite direction. So u_theta = -(4/pi) sum of sin(n theta)/n over odd n at r = 1, psi = sum of
+    a_n (r^n - r^(n+2)) sin(n theta), a_n = -2/(pi n), and at theta = -pi/2 the sums are those of 1/(1 + r^2) and arctan r.
     """
     s = np.asarray(depth, dtype=float)
     return 2 / np.pi * ((s**2 - 1) / (s**2 + 1) + 2 * s * np.arctan(s))
 
 
 def drum(viscosity=0.02, density_ratio=100.0, viscosity_ratio=1000.0):
-    """Return the drum's numbers, R = g = rho = 1 and Omega = nu, with a gas that hardly holds the surface back."""
+    """Return the drum's numbers, R = g = rho = 1 and Omega = nu, with a gas that exerts almost no drag on the surface."""
     return dict(
         radius=1.0,
         gravity=1.0,
@@ -105,14 +107,14 @@ def surface(x, y, fraction, reach):
     for column in columns:
         alpha = fraction[:, column]
         row = np.flatnonzero((alpha[:-1] >= 0.5) & (alpha[1:] < 0.5))
-        row = row[np.argmin(np.abs(y[row]))]  # a drop or a bubble is no surface
+        row = row[np.argmin(np.abs(y[row]))]  # ignore drops and bubbles
         heights.append(y[row - 1] + (alpha[row - 1 : row + 3].sum() - 0.5) * (y[1] - y[0]))
     slope, height = np.polyfit(x[columns], heights, 1)
     return float(np.arctan(slope)), float(height)
 
 
 def ours(drum, cells, dt, end, **words):
-    """Return what our solver has `Found` at the time `end`, from rest, on squares of which `cells` lie across the drum."""
+    """Return our solver's result (`Found`) at the time `end`, from rest, on squares with `cells` across the drum."""
     radius = drum["radius"]
     spacing = 2 * radius / cells
     count = cells + 2 * SHELL
@@ -134,7 +136,7 @@ def ours(drum, cells, dt, end, **words):
 
 
 def theirs(drum, cells, dt, end, folder, **settings):
-    """Return what interFoam has `Found` at the time `end`, from rest, on the same squares; its case stays in the folder."""
+    """Return interFoam's result (`Found`) at the time `end`, from rest, on the same squares; its case stays in the folder."""
     mesh = interfoam.write(folder, drum, cells, dt, end, **settings)
     seconds = interfoam.run(folder)
     fraction, velocity = interfoam.state(folder, mesh)
@@ -166,14 +168,14 @@ def measure(quick):
     for cells, run in other.items():
         seconds = cost_at(run.error, own)
         if seconds is None:
-            print(f"no ratio at interFoam's {100 * run.error:.1f} %: none of our grids is as near", file=sys.stderr)
+            print(f"no ratio at interFoam's {100 * run.error:.1f} %: none of our grids is as exact", file=sys.stderr)
             continue
         work = cell_steps(cells, grids[1][cells])
         yield row(f"interFoam, {100 * run.error:.1f} %", work / seconds, work / run.seconds)
 
 
 def told_difference(own, other):
-    """Return how far apart the two codes' u(z) are on the grid that both have and on the finest of each, as text."""
+    """Return the difference of the two codes' u(z) on the grid that both have, and on the finest of each, as text."""
     grids = [(SAME_GRID, SAME_GRID), (max(own), max(other))]
     apart = [f"{100 * difference(own[a].u, other[b].u):.1f} % on {a} and {b} cells" for a, b in grids]
     return f"u(z) of ours and of interFoam differ by {' and by '.join(apart)} across"
@@ -182,7 +184,7 @@ def told_difference(own, other):
 def by_turns(our_grids, their_grids, rounds):
     """Return ({cells: Found} of ours, of interFoam) for grids {cells: step}, each with the median of its seconds.
 
-    The two run one after the other, grid by grid and round by round; what they find is the same in every round.
+    The two codes run one after the other, grid by grid and round by round; their results are the same in every round.
     """
     numbers = drum()
     own, other, seconds = {}, {}, {}
@@ -207,9 +209,9 @@ def cell_steps(cells, dt):
 
 
 def cost_at(error, found):
-    """Return the seconds in which a code has that error, between those of its grids by powers; None where none is as near.
+    """Return the seconds that a code needs for that error, interpolated by powers between grids; None if none is as exact.
 
-    An error above that of the coarsest grid costs what this one does.
+    An error above that of the coarsest grid costs as much as the coarsest grid.
     """
     errors = np.log([run.error for run in found.values()])
     if np.log(error) < errors.min():

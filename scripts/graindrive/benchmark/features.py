@@ -14,8 +14,8 @@ import numpy as np
 from .layout import DRIVEN, FREE
 
 NAME = "lattice"
-BITS = 0.0  # the promise that nothing changes, not even the last bit
-ROUND_OFF = 1e-10  # what the order of sums may grow to in the tests' crowd, which collides for some contact times [d]
+BITS = 0.0  # no difference is allowed, not even in the last bit
+ROUND_OFF = 1e-10  # largest effect of the order of sums in the tests' crowd, which collides for some contact times [d]
 SPRING = dict(law="springDashpot", constants=(2e5, 2e5 * 2 / 7, 0.92), density=4 / np.pi)
 HERTZ = dict(law="hertzHistory", constants=(2e6, 2.46e6, 2500.0, 2500.0))
 NEARLY_NOTHING = 1e-290  # too small to change any number of a scene, and not 0, which would compile friction out
@@ -23,7 +23,7 @@ NEARLY_NOTHING = 1e-290  # too small to change any number of a scene, and not 0,
 
 @dataclass(frozen=True)
 class Feature:
-    """Something that a scene may ask for.
+    """A feature that a scene may use.
 
     `scene` changes the base scene, `against` the scene without the feature where that is not the base, `settings` go to
     `ours.serve`. `nothing` = (change of the scene, settings) sets the feature to nothing, and the result then differs by
@@ -45,7 +45,7 @@ def changed(**changes):
 
 
 def in_space(a_scene):
-    """Return the disks of a scene as spheres of the same mass in one layer, which nothing moves out of it."""
+    """Return the disks of a scene as spheres of the same mass in one layer, with no force out of the layer."""
     zeros = np.zeros(len(a_scene["r"]))
     rest = {key: zeros.copy() for key in ("z", "vz", "wx", "wy", "wz")}
     kept = {key: value for key, value in a_scene.items() if key != "spin"}
@@ -60,23 +60,23 @@ def walled(a_scene):
 
 
 def far_periods(a_scene):
-    """Return a scene whose sides repeat after twenty times its extent."""
+    """Return a scene whose periods are twenty times its extent."""
     return dict(a_scene, period=20 * extent(a_scene))
 
 
 def extent(a_scene):
-    """Return how far a scene reaches along x and y from its lower left corner (2,), a grain included."""
+    """Return the extent of a scene along x and y (2,), including the grains' size."""
     return np.array([a_scene[axis].max() - a_scene[axis].min() + 2 for axis in "xy"])
 
 
 def walls_of(a_scene, away=0.0):
-    """Return the places of four walls, half a diameter beyond the outer centres, or so much further `away`."""
+    """Return the positions of four walls, half a diameter beyond the outer centres plus `away`."""
     off = 0.495 + away
     names = [(f"{axis}_{end}", a_scene[axis], sign) for axis in "xy" for end, sign in (("low", -1), ("high", 1))]
     return {name: float((x.min() if sign < 0 else x.max()) + sign * off) for name, x, sign in names}
 
 
-FAR = 50.0  # walls that nothing meets [d]
+FAR = 50.0  # distance of walls that no grain touches [d]
 
 FEATURES = (
     Feature("Hertz in place of a linear spring", changed(**HERTZ), words="another law; not nothing"),
@@ -225,7 +225,7 @@ HEADING = (
 
 
 def line(found):
-    """Return a row in words."""
+    """Return a row as text."""
     return (
         f"{found['feature']:43} {found['ratio']:6.2f} {found['lowest']:7.2f} {found['highest']:7.2f}"
         f" {found['without_it_ns']:7.1f} {found['with_it_ns']:8.1f}  {found['when_nothing']}"

@@ -1,12 +1,12 @@
-"""OpenFOAM's `interFoam` on a drum half full of a Newtonian fluid: the case's files, a run, and its last state as arrays.
+"""Runs OpenFOAM's `interFoam` on a drum half full of a Newtonian fluid: writes the case, runs it, reads its last state.
 
-The mesh is one of squares, those whose centres lie in the drum, and every face of its wall has the velocity of a solid that
-turns rigidly, through the face too. A mesh that follows the circle is of no use with Debian 12's package `openfoam`
-(1912.200626-1+b1): where faces are inclined, what its `interFoam` and `potentialFoam` rebuild velocities from fluxes with gives
+The mesh consists of the squares whose centres lie in the drum, and every face of its wall has the velocity of a rigidly rotating
+solid, also normal to the face. A mesh that follows the circle cannot be used with Debian 12's package `openfoam`
+(1912.200626-1+b1): on inclined faces its reconstruction of velocities from fluxes, in `interFoam` and `potentialFoam`, gives
 every other cell a wrong component. On a slanted mesh `potentialFoam` returns a uniform flow (1, 0) as (0.97, 3.98) in the second
-cell, and `interFoam` diverges within ten steps whatever the time step, without gravity and with one fluid too. With that fault
-undone, a mesh of 40 cells across that followed the circle erred as this one does, 5.1 and 5.2 % in u(z) at t = 15 sqrt(R/g): it
-is the surface that decides, not the wall.
+cell, and `interFoam` diverges within ten steps for any time step, also without gravity and with one fluid. With this fault
+corrected, a mesh of 40 cells across that followed the circle had the same error as this one, 5.1 and 5.2 % in u(z) at
+t = 15 sqrt(R/g): the error comes from the surface, not from the wall.
 """
 
 import os
@@ -64,7 +64,7 @@ PIMPLE
 }}
 """
 
-# At rest but for a creep: interFoam compares the flow through the wall with the fluxes of the start, which must not be zero.
+# Almost at rest: interFoam compares the flow through the wall with the initial fluxes, which must not be zero.
 SPEED = """dimensions [0 1 -1 0 0 0 0];
 internalField uniform ({creep:.3g} 0 0);
 boundaryField
@@ -221,7 +221,7 @@ def write(folder, drum, cells, dt, end, corrections=3, tolerance=1e-8, compressi
 def run(folder):
     """Run a case that `write` left in a folder on one core; return its processor time [s].
 
-    RuntimeError with interFoam's last words if it fails.
+    RuntimeError with interFoam's last output if it fails.
     """
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     log = Path(folder) / f"{PROGRAM}.log"

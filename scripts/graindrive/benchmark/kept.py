@@ -1,8 +1,8 @@
-"""Scenes of the benchmark in the cache: made once, read afterwards."""
+"""Keeps the scenes of the benchmark in the cache: they are made once and read afterwards."""
 
 from ..beds import cache
 
-RECIPE = 2  # raise it when a scene comes out different
+RECIPE = 2  # version of the scenes; increase it when a scene changes
 
 
 def kept(name, make):

@@ -1,4 +1,4 @@
-"""The same scene in LAMMPS: data file, input, one run, and what its log says."""
+"""Runs a scene in LAMMPS: writes data file and input, runs it once, reads its log."""
 
 import shutil
 
@@ -8,9 +8,9 @@ from . import layout, peer_files
 from .layout import DRIVEN
 from .ours import DRUM_MASS, is_drum
 
-# Three traps: 2D `read_data` takes a sphere's mass until `set density/disc`; two ranks need `processors 2 1 1` for a wide
-# bed; without `disc` nve/sphere turns spheres. erotate/sphere knows spheres only: a disk's energy is 5/4 of what it says.
-# Spheres have their density in the data file.
+# Pitfalls: in 2D `read_data` gives disks the mass of spheres until `set density/disc`; two ranks need `processors 2 1 1` for a
+# wide bed; without `disc`, nve/sphere uses the inertia of spheres. erotate/sphere assumes spheres: a disk's rotational energy is
+# 5/4 of its value. Spheres have their density in the data file.
 INPUT = """
 units lj
 {dimension}

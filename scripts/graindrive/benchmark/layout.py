@@ -1,4 +1,4 @@
-"""How a scene is laid out, in the plane and in space: one dict of arrays and numbers, and what everyone asks of it.
+"""The layout of the benchmark's scenes, in the plane and in space: a dict of arrays and numbers, and functions that read it.
 
 Arrays of shape (n,): r, kind (0 free, 1 wall, 2 driven disk); numbers: law, constants, friction, density, dt.
 Disks have x, y, vx, vy, spin, and numbers gravity (against y), period (in x, 0 for none), drive (vx, vy, spin of the
@@ -58,7 +58,7 @@ def at_standstill(a_scene):
 
 
 def periods(a_scene):
-    """Return the lengths (x, y, z) after which the scene repeats, 0 where it does not."""
+    """Return the periods (x, y, z) of the scene, 0 along axes that are not periodic."""
     given = np.atleast_1d(a_scene["period"]).astype(float).tolist()
     return tuple(given + [0.0] * (3 - len(given)))
 

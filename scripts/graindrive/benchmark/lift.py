@@ -51,10 +51,10 @@ def poured(length, width, grains, seed=1):
 
 
 def settled(start, per_grain=1e-5):
-    """Return what has fallen and come to rest: less kinetic energy per grain than `per_grain` m g d in 1000 steps from rest.
+    """Return the bed after it has settled: kinetic energy per grain below `per_grain` m g d in 1000 steps from rest.
 
-    Grains bounce little, and when they have fallen, everything is stopped every 1000 steps: a bed swings up and down for
-    long, with a period of some thousand steps, which contacts damp by little.
+    Grains bounce little. After they have fallen, all motion is stopped every 1000 steps, because a bed oscillates up and down
+    for long, with a period of some thousand steps, and contacts damp this motion little.
     """
     from . import ours
 

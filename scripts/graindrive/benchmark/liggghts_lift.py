@@ -103,7 +103,7 @@ def words(numbers):
 
 
 def dragged(stage, material, gravity, bulk_gravity, diameter, steps, every, folder):
-    """Carry the scene that YADE holds past the cylinder; return forces every so many steps, and all places at the end.
+    """Move the scene that YADE holds past the cylinder; return forces at intervals, and all positions at the end.
 
     Forces are those on the cylinder and on the base [N], a dict of `COLUMNS`, from the scene's start on; places (n, 3) [m]
     stand in the order of `spheres_of`. material is a `HertzRestitutionSpheres`, diameter that of the cylinder [m].

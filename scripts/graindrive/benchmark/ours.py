@@ -10,7 +10,7 @@ from ..lazily import engines
 from . import features, layout
 from .layout import DRIVEN, FREE, WALL
 
-DRUM_MASS = 1e9  # wall and intruder of a drum are as good as infinitely heavy
+DRUM_MASS = 1e9  # wall and intruder of a drum are practically infinitely heavy
 
 
 def bodies(a_scene):
@@ -41,7 +41,7 @@ def bodies(a_scene):
 
 
 def make_periodic(a_scene):
-    """Make YADE's cell periodic where the scene is; along other axes it is too long for anything to meet its image."""
+    """Make YADE's cell periodic as the scene; along other axes it is so long that no body reaches its image."""
     from yade import O
 
     if any(layout.periods(a_scene)):
@@ -51,7 +51,7 @@ def make_periodic(a_scene):
 
 
 def is_drum(a_scene):
-    """Return True where the wall turns as one body."""
+    """Return True if the wall turns as one body."""
     return not any(layout.periods(a_scene)) and bool(a_scene["drive"][2])
 
 
@@ -140,7 +140,7 @@ def move_on(a_scene, until, dt=None, **settings):
 
 
 def halt():
-    """Take all motion from the bodies of a scene; GrainLoop hears it in the next step, and keeps its springs."""
+    """Set all velocities of a scene to zero; GrainLoop takes this up in the next step, and keeps its springs."""
     from yade import O
     from yade.minieigenHP import Vector3
 

@@ -1,4 +1,4 @@
-"""What LAMMPS and LIGGGHTS have in common: the data file, a run in a folder, and what its log says."""
+"""Common parts for LAMMPS and LIGGGHTS: the data file, a run in a folder, and reading its log."""
 
 import math
 import re
@@ -86,7 +86,7 @@ def run(command, a_scene, settings, steps, folder, name):
     share = re.search(r"([\d.]+)% CPU use", log)
     if share:
         cpu = wall * float(share[1]) / 100
-    else:  # LIGGGHTS does not say: what a run of no steps takes is its set-up
+    else:  # LIGGGHTS does not print it: a run without steps measures the set-up
         cpu = processor_time - run_once(command, a_scene, settings, 0, folder, name)[1]
     rows = [line.split() for line in log[: log.index("Loop time")].splitlines() if re.match(r"\s*\d+\s", line)]
     _, slide, turn = map(float, rows[-1])

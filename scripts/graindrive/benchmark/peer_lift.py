@@ -1,15 +1,15 @@
-"""Compares drag and lift of the lift study with LIGGGHTS's: the same bed at rest, carried past the same cylinder.
+"""Compares drag and lift of the lift study with LIGGGHTS: the same bed, initially at rest, moves past the same cylinder.
 
 usage: scripts/compare_lift [key=value …] [--seeds 1 2 3] [--out DIR]
 
   key=value    keys of the lift study, such as scale=demo lid_density=20 (its demo by default); frame=cylinder is set
-  --seeds      the packings that are compared, 1 by default
-  --out DIR    where LIGGGHTS's input, forces.json, the numbers, and report.md are left, for `scripts/results DIR`; by default a
-               folder that is removed
+  --seeds      seeds of the packings to compare, 1 by default
+  --out DIR    folder for LIGGGHTS's input, forces.json, the numbers, and report.md, for `scripts/results DIR`; by default a
+               temporary folder
 
 Both start from the bed at rest without its tangential springs, which LIGGGHTS cannot be given, and run one after the other on
-one core. Printed are means over the travel in which both are steady, with standard errors, and what the difference is over
-the combined error. The packings' mean has the larger of the runs' own error and the scatter of the packings.
+one core. The output holds means over the travel in which both are steady, with standard errors, and the difference over the
+combined error. The error of the mean over packings is the larger of the runs' own error and the scatter of the packings.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from ..postproc.statistics import block_mean
 from . import liggghts_lift as peer
 
 EVERY = 10  # steps between two samples
-SIGMAS = 2  # combined errors within which means are the same
+SIGMAS = 2  # number of combined errors up to which means count as equal
 
 
 # ---- one scene in both codes -----------------------------------------------------------------------------------------
@@ -45,16 +45,16 @@ def without_springs(_bed, found):
 
 
 def theirs(lift, p, stage, material, steps, every, folder):
-    """Return LIGGGHTS's forces on cylinder and base every so many steps, without those of the start, (n, 6)."""
+    """Return LIGGGHTS's forces on cylinder and base at intervals, without the initial ones, (n, 6)."""
     given = lift.GRAVITY, p.bulk_gravity, p.cylinder_diameter * lift.D
     found, _ = peer.dragged(stage, material, *given, steps, every, folder)
     return np.stack([found[name] for name in peer.COLUMNS], axis=1)[1:]
 
 
 def ours(steps, every, block):
-    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples `every` so many steps.
+    """Return GrainLoop's forces on cylinder and base, (steps/block, 6): means over blocks of samples.
 
-    Velocities begin on the step, as LIGGGHTS's.
+    `every` is the number of steps between samples. Initial velocities belong to the time of the positions, as in LIGGGHTS.
     """
     from yade import O
 
@@ -132,7 +132,7 @@ def compare(lift, parameters, seeds, folder, keys):
 
 
 def row_of(seed, name, own, other, seconds):
-    """Return what forces.json keeps of a comparison [N, s]."""
+    """Return the entry of a comparison in forces.json [N, s]."""
     values = dict(own=own.value, own_err=own.error, liggghts=other.value, liggghts_err=other.error)
     return dict(seed=seed, force=name, **values, own_s=seconds[0], liggghts_s=seconds[1])
 

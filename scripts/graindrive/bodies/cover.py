@@ -2,17 +2,17 @@
 
 import numpy as np
 
-SAMPLES = 16  # points on the outline per spacing of the grid: distances to it are good to 1/2000 of the spacing
-MARGIN = 1e-3  # of the spacing, more than that error: a disk that would only just touch the outline is left out
+SAMPLES = 16  # points on the outline per spacing of the grid: the error of distances to it is 1/2000 of the spacing
+MARGIN = 1e-3  # of the spacing, more than that error: a disk that would barely touch the outline is left out
 
 
 def disks_inside(outline, spacing):
     """Return rows x, y, radius of disks inside the closed polygon `outline` (m, 2), shape (n, 3).
 
-    They have the radius `spacing` and stand on a square grid as far apart, wherever such a disk fits in: they leave no hole but
-    a seam along the outline that is narrower than two spacings.
+    They have the radius `spacing` and lie on a square grid of that spacing, wherever such a disk fits in. They cover the whole
+    inside except a strip along the outline that is narrower than two spacings.
     """
-    from scipy.spatial import cKDTree  # half a second that help does not need
+    from scipy.spatial import cKDTree  # this import takes half a second, and help does not need it
 
     grid = grid_inside(outline, spacing)
     if len(grid) == 0:

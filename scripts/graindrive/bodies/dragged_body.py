@@ -16,10 +16,10 @@ SPACING = 0.1  # d, of the grid in which a distance is sampled, unless its file 
 
 @dataclass(frozen=True)
 class DraggedBody:
-    """A solid about its own origin, lengths in m: `surface`, corners `low` and `high` (3,) of the box around it, `volume`.
+    """A solid relative to its own origin, lengths in m: `surface`, corners `low` and `high` (3,) of its box, `volume`.
 
-    `endless` bodies go on along y and fill the box's breadth; their low and high there are half of it. `outline` (m, 2) are
-    corners x, z of their section; other bodies have none, (0, 2).
+    `endless` bodies fill the box's breadth along y; their low and high in y are minus and plus half the breadth. `outline` (m, 2)
+    holds the corners x, z of their section; other bodies have none, (0, 2).
     """
 
     surface: object
@@ -40,7 +40,7 @@ class DraggedBody:
         return float(self.high[1] - self.low[1])
 
     def described(self):
-        """Return what a run folder stores of the body, arrays by name [m]: outline, low, high; without an outline a mesh."""
+        """Return the arrays that a run folder stores, by name [m]: outline, low, high; for bodies without outline a mesh."""
         told = dict(outline=self.outline, low=self.low, high=self.high)
         if not len(self.outline):
             told["points"], told["quads"] = surface_nets.mesh(self.surface, self.low, self.high)
@@ -48,10 +48,10 @@ class DraggedBody:
 
 
 def of_shape(shape, diameter, breadth, d):
-    """Return the `DraggedBody` of a shape: "cylinder" of that diameter, or what a file describes, in grain diameters.
+    """Return the `DraggedBody` of a shape: "cylinder" of that diameter, or a body from a file, in grain diameters.
 
     `.csv` and `.wkt` hold an outline in the plane of x, the direction of travel, and z, up, that is swept along y; `.py` a
-    Python function `distance(points)`, see `sampled_from`. diameter, breadth of the box and d in m. UsageError for what is none.
+    Python function `distance(points)`, see `sampled_from`. diameter, breadth of the box and d in m. UsageError for other shapes.
     """
     if shape == "cylinder":
         return cylinder(diameter, breadth)
@@ -88,7 +88,7 @@ def sampled_from(path, d):
 
     It defines `distance(points)`, which gives the signed distances (n,) of points (n, 3), > 0 outside; `low` and `high`,
     corners of the box to sample it in, which reach beyond the body by the radius of a grain; and, if wanted, `spacing` of
-    the samples. Its normal is that of the sampled distance. UsageError with the reason for what is no such file.
+    the samples. The normal is computed from the sampled distance. UsageError with the reason for any other file.
     """
     told = told_by(path)
     try:
@@ -96,12 +96,12 @@ def sampled_from(path, d):
         made = surfaces.sampled(lambda points: told["distance"](points / d) * d, low * d, high * d, float(spacing) * d)
         points = grid(low, high, float(spacing))
         depth = -np.asarray(told["distance"](points), float) / spacing
-    except Exception as error:  # a function of somebody's may raise anything
+    except Exception as error:  # a user's function may raise any error
         raise UsageError(f"shape={one_line(path)}: {one_line(error, 400)}") from None
     inside = points[depth > -0.5]
     if not len(inside):
         raise UsageError(
-            f"shape={one_line(path)}: distance(points) is nowhere negative between low and high: there is no inside"
+            f"shape={one_line(path)}: distance(points) is nowhere negative between low and high, so the body has no inside"
         )
     volume = np.clip(0.5 + depth, 0, 1).sum() * spacing**3
     return DraggedBody(

@@ -17,7 +17,7 @@ from ..parameters import StudyParameters
 LARGEST_FILE = 4 << 20  # bytes; engines.read_outline reads no more
 
 
-MOST_BEADS = 10_000  # each is a disk of YADE's
+MOST_BEADS = 10_000  # each bead is a disk in YADE
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Intruder:
         return float(np.ptp(self.outline[:, 1]))
 
     def placed(self, at):
-        """Return what a packing's recipe asks for, with the centroid at `at`: beads and outline as rows, the beads' radius."""
+        """Return the data for a packing's recipe, with the centroid at `at`: beads and outline as rows, the beads' radius."""
         beads, outline = (tuple(map(tuple, points + at)) for points in (self.beads, self.outline))
         return dict(beads=beads, bead_radius=self.bead_radius, outline=outline)
 
@@ -53,13 +53,13 @@ class Intruder:
         return replace(self, **lengths, area=self.area * factor**2, inertia=self.inertia * factor**2)
 
     def as_arrays(self, unit):
-        """Return what a run folder keeps of it, for the group `intruder`."""
+        """Return the arrays of the group `intruder` of a run folder."""
         arrays = dict(beads=(self.beads, unit), bead_radius=(self.bead_radius, unit))
         return {**arrays, "outline": (self.outline, unit)} if len(self.outline) else arrays
 
 
 def exact_disk(diameter, density):
-    """Return a disk that is one bead, density in mass over the square of the diameter's unit."""
+    """Return a disk made of one bead; the unit of density is mass over the square of the diameter's unit."""
     radius, area = diameter / 2, np.pi * diameter**2 / 4
     inertia = density * area * diameter**2 / 8
     return Intruder(np.zeros((1, 2)), radius, np.zeros((0, 2)), area, radius, density * area, inertia)
@@ -69,7 +69,7 @@ def make(shape, *, bead_diameter, mass, orientation_deg=0, bead_spacing=1):
     """Return the `Intruder` of that shape, turned counter-clockwise about its centroid by `orientation_deg`.
 
     `shape` is a name that `engines.outline_of` knows or a file of vertices; lengths in its unit, `bead_spacing` in bead
-    diameters. Raises UsageError for what cannot be a body.
+    diameters. Raises UsageError for an invalid body.
     """
     return beads_along(outline_of(shape, orientation_deg), shape, bead_diameter, bead_spacing, mass)
 
@@ -88,9 +88,9 @@ def of_size(shape, size, bead_diameter, density):
 
 
 def outline_of(shape, orientation_deg=0):
-    """Return the outline that a name or a file means, about its centroid, turned; UsageError if there is none.
+    """Return the outline given by a name or a file, relative to its centroid, rotated; UsageError if there is none.
 
-    `orientation_deg` may be any finite number; whole turns are taken off it first, without round-off.
+    `orientation_deg` may be any finite number; whole turns are subtracted first, without round-off.
     """
     try:
         is_file = names_a_file(shape)
@@ -122,19 +122,19 @@ def check_bead_count(outline, shape, step):
     count = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T).sum() / step
     if not count <= MOST_BEADS:
         raise UsageError(
-            f"shape={one_line(shape)} takes {count:.3g} beads, more than {MOST_BEADS}; take larger beads or a wider spacing"
+            f"shape={one_line(shape)} needs {count:.3g} beads, more than {MOST_BEADS}; give larger beads or a wider spacing"
         )
 
 
 def add_held(body, x, y, density):
-    """Put a body that nothing but a drive moves into YADE at (x, y), a single disk as itself; return its id."""
+    """Put a body that only a drive moves into YADE at (x, y), as a clump or a single disk; return its id."""
     if len(body.outline) == 0:
         return scene.add_disks([x], [y], [body.bead_radius], density, "xyzXYZ")[0]
     return scene.add_intruder(body, x, y)
 
 
 def not_a_body(shape, error):
-    """Return the UsageError that says why a shape cannot be a body (without words where a file holds no text)."""
+    """Return the UsageError that says why a shape cannot be a body; `error` has no message if a file holds no text."""
     reason = one_line(error, 400) or "it must be a text file of vertices in WKT or CSV"
     return UsageError(f"shape={one_line(shape)}: {reason}")
 
@@ -155,9 +155,9 @@ class BodyParameters(StudyParameters):
 
 @functools.lru_cache(maxsize=None)
 def contents_of(path):
-    """Return what stands for a file's contents, as they are when the program first asks; "" if it cannot be an outline.
+    """Return a digest of a file's contents at the first call of the program; "" if the file cannot be an outline.
 
-    A pipe or a device is not opened, for its contents may have no end.
+    A pipe or a device is not opened, because its contents may have no end.
     """
     file = Path(os.path.expanduser(path))
     try:
@@ -172,7 +172,7 @@ def check_room(body, *, swing, width, height, depth, lid):
     """Raise UsageError unless a bed has room for the body and its motion.
 
     The body's centre lies `depth` below the surface of a bed `width` wide and `height` high and moves by `swing` to either
-    side; the uppermost `lid` of the bed is not for it. All in d.
+    side; it must stay below the uppermost part of thickness `lid`. All lengths in d.
     """
     (left, bottom), (right, top) = body.outline.min(axis=0), body.outline.max(axis=0)
     needed = right - left + 2 * swing + 4
@@ -188,5 +188,5 @@ def check_room(body, *, swing, width, height, depth, lid):
     if depth < top + lid:
         free = f"bed below its lid of {lid:g} d" if lid else "bed"
         raise UsageError(
-            f"depth={depth:g} d lets the body stick out of the {free} by {top + lid - depth:g} d; raise depth"
+            f"depth={depth:g} d lets the body protrude from the {free} by {top + lid - depth:g} d; raise depth"
         )

@@ -1,8 +1,8 @@
-"""Outlines of the bodies that put resistive-force theory to the test: tilted plates and half-cylinders, in studies/shapes/.
+"""Writes the outlines of bodies for tests of resistive-force theory: tilted plates and half-cylinders, in studies/shapes/.
 
     PYTHONPATH=build/python /usr/bin/python3 -m graindrive.bodies.outlines_for_lift
 
-writes them anew. Lengths in grain diameters; x is the direction of travel, y is up. A plate's tilt beta is counted from the
+writes them again. Lengths in grain diameters; x is the direction of travel, y is up. A plate's tilt beta is counted from the
 horizontal and is > 0 where its front edge is the higher one, so that the face which meets the grains looks down.
 """
 
@@ -22,7 +22,7 @@ FOLDER = Path(__file__).resolve().parents[3] / "studies" / "shapes"
 
 
 def plate(tilt):
-    """Return the corners (4, 2) of a plate tilted by so many degrees."""
+    """Return the corners (4, 2) of a plate tilted by `tilt` [degrees]."""
     half = np.array([LENGTH, THICKNESS]) / 2
     corners = half * [(-1, -1), (1, -1), (1, 1), (-1, 1)]
     cos, sin = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))

@@ -1,4 +1,4 @@
-"""The command `scripts/campaign`: plan, runs, table, report; what is there already is never made again."""
+"""The command `scripts/campaign`: plan, runs, table, report; complete runs are never made again."""
 
 import argparse
 import os
@@ -17,7 +17,7 @@ SOME_FAILED = 1
 
 
 def main(arguments):
-    """Carry out what the command line asks for; return the exit code."""
+    """Carry out the command line; return the exit code."""
     options = read_arguments(arguments)
     outcome = []
     code = guarded(lambda: outcome.append(campaign(options)), NAME)
@@ -25,13 +25,17 @@ def main(arguments):
 
 
 def read_arguments(arguments):
-    """Return the options; what follows `--` is Snakemake's."""
+    """Return the options; those after `--` are passed to Snakemake."""
     at = arguments.index("--") if "--" in arguments else len(arguments)
     parser = argparse.ArgumentParser(prog="scripts/campaign", allow_abbrev=False)
     parser.add_argument("file", type=Path, help="the campaign's YAML file")
-    parser.add_argument("-n", "--dry-run", action="store_true", help="only say what would run, and what it would cost")
-    parser.add_argument("--report", action="store_true", help="start no run; only make table and report anew")
-    parser.add_argument("--cores", type=int, default=os.cpu_count(), help="runs at a time; default: all processors")
+    parser.add_argument(
+        "-n", "--dry-run", action="store_true", help="only list the runs that would be made, and their cost"
+    )
+    parser.add_argument("--report", action="store_true", help="start no run; only rebuild table and report")
+    parser.add_argument(
+        "--cores", type=int, default=os.cpu_count(), help="number of runs at a time; default: all processors"
+    )
     parser.add_argument("--out", type=Path, help="the campaign's folder; default: named after the file")
     options = parser.parse_args(arguments[:at])
     options.snakemake = arguments[at + 1 :]
@@ -58,7 +62,7 @@ def campaign(options):
 
 
 def make_runs(folder, plan, options, lock):
-    """Have the missing runs made, if there are any."""
+    """Make the missing runs, if there are any."""
     for line in execution.set_damaged_aside(folder, plan):
         print(f"{NAME}: {line}", file=sys.stderr)
     todo = execution.missing(folder, plan)
@@ -69,7 +73,7 @@ def make_runs(folder, plan, options, lock):
 
 
 def tell(folder, plan, cores):
-    """Say what a call would run; return 0."""
+    """Print the runs that a call would make; return 0."""
     todo = execution.missing(folder, plan)
     for run in todo:
         print(f"{run.name}  ({', '.join(run.sweeps)})  {' '.join(run.arguments)}")
@@ -78,7 +82,7 @@ def tell(folder, plan, cores):
 
 
 def tell_failures(folder, plan):
-    """Name the runs that are missing, each with the last words of its log; return the exit code."""
+    """Print the missing runs, each with the last line of its log; return the exit code."""
     failed = execution.failures(folder, plan)
     for name, words in failed.items():
         print(f"{NAME}: {name} is not complete: {words} (logs/{name}.log)", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""What the runs of a campaign will cost, from the study's estimate and from the runs that are there already."""
+"""Estimates the cost of a campaign's runs from the study's estimate and from the complete runs."""
 
 import statistics
 
@@ -7,29 +7,29 @@ from ..study import duration
 
 
 def in_words(folder, plan, todo, cores):
-    """Return in one line what the runs `todo` will cost, or why nobody knows."""
+    """Return a line on the cost of the runs `todo`, or on why it is unknown."""
     if not todo:
         return "nothing is left to run"
     cost = plan.study.cost
     estimate = cost.core_seconds if cost else alike
     measured = ratios(folder, plan, todo, estimate)
     if not measured and not cost:
-        return "what they cost is known once one of them is done"
+        return "their cost is known only after one of them is complete"
     factor = statistics.median(measured) if measured else 1.0
     seconds = [factor * estimate(run.parameters) for run in todo]
     work = f"{sum(cost.work(run.parameters) for run in todo):.2g} {cost.unit}, " if cost else ""
-    basis = f"as {len(measured)} runs that are there took" if measured else "estimated, packings aside"
+    basis = f"from {len(measured)} complete runs" if measured else "estimated, without packings"
     wall = max(sum(seconds) / cores, max(seconds))
     return f"{work}about {duration(sum(seconds))} of processor time, {duration(wall)} on {cores} cores ({basis})"
 
 
 def alike(_parameters):
-    """Stand for an estimate where there is none: all runs cost the same."""
+    """Replace a missing estimate: all runs cost the same."""
     return 1.0
 
 
 def ratios(folder, plan, todo, estimate):
-    """Return the measured over the estimated cost of each run that is there already."""
+    """Return the measured over the estimated cost of each complete run."""
     left = {run.name for run in todo}
     done = [run for run in plan.runs if run.name not in left]
     taken = [(run, summary_file.read(folder / "runs" / run.name).get("wall_s")) for run in done]

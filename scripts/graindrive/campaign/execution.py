@@ -1,4 +1,4 @@
-"""Carrying out a plan: its folder, Snakemake as a child that a signal ends cleanly, and what came of each run."""
+"""Carries out a plan: makes its folder, runs Snakemake as a child that a signal ends cleanly, and reports failed runs."""
 
 import contextlib
 import errno
@@ -13,7 +13,7 @@ from ..base.errors import Interrupted, UsageError
 from ..runs.run_place import damage, set_aside, stored_digest
 from . import plan_json
 
-PROGRAM = [sys.executable]  # that runs a study's file: YADE is a library there, which opens no port
+PROGRAM = [sys.executable]  # runs a study's file; YADE is then a library, which opens no port
 SNAKEFILE = Path(__file__).with_name("Snakefile")
 IN_THE_WAY = {getattr(errno, f"E{name}") for name in "ISDIR NOTDIR EXIST ACCES PERM ROFS NAMETOOLONG LOOP".split()}
 
@@ -32,18 +32,20 @@ def nothing_in_the_way(folder):
 
 @contextlib.contextmanager
 def opened(folder, plan):
-    """Make the campaign's folder, hold its lock, which is yielded, and leave the plan in it as `campaign.json`."""
+    """Make the campaign's folder, write the plan into it as `campaign.json`, and yield its lock, held in this block."""
     try:
         for name in ("runs", "logs", "done"):
             (folder / name).mkdir(parents=True, exist_ok=True)
         lock = open(folder / ".lock", "w")
     except OSError as error:
-        raise UsageError(f"out={folder} cannot be written ({error.strerror}); give --out a folder of yours") from None
+        raise UsageError(f"out={folder} cannot be written ({error.strerror}); give another --out") from None
     with lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise UsageError(f"another scripts/campaign is at work in {folder}; wait for it, or give --out") from None
+            raise UsageError(
+                f"another scripts/campaign is working in {folder}; wait for it, or give another --out"
+            ) from None
         plan_json.write(folder, plan, PROGRAM)
         yield lock
 
@@ -54,7 +56,7 @@ def missing(folder, plan):
 
 
 def set_damaged_aside(folder, plan):
-    """Move run folders that cannot be read out of the way, so that they are made again; return a line on each."""
+    """Rename run folders that cannot be read, so that the runs are made again; return a line on each."""
     places = {run.name: folder / "runs" / run.name for run in plan.runs}
     found = {name: problem for name, place in places.items() if (problem := damage(place))}
     return [
@@ -63,20 +65,20 @@ def set_damaged_aside(folder, plan):
 
 
 def set_marks(folder, plan):
-    """Make the marks in `done/` agree with the run folders, which may have been removed, or made by hand."""
+    """Make the marks in `done/` agree with the run folders, which users may have removed or made."""
     names = {run.name for run in missing(folder, plan)}
     for run in plan.runs:
         mark = folder / "done" / run.name
         if mark.is_dir():
-            raise UsageError(f"{mark} is a folder where a file belongs; move it away, or give another --out")
+            raise UsageError(f"{mark} must be a file, but it is a folder; move it away, or give another --out")
         mark.unlink(missing_ok=True) if run.name in names else mark.touch()
 
 
 def carry_out(folder, plan, cores, options, lock):
-    """Have Snakemake make the runs that are missing; return its exit code. A signal ends it and its runs, and is raised.
+    """Make the missing runs with Snakemake; return its exit code. A signal ends it and its runs, and is then raised.
 
-    Snakemake gets a process group of its own, so that each run hears of Ctrl-C, or of a SIGTERM, exactly once. It holds the
-    open file `lock` too: where this process is killed, Snakemake works on and must keep a second call out.
+    Snakemake gets its own process group, so that each run receives Ctrl-C or SIGTERM exactly once. It also holds the
+    open file `lock`: if this process is killed, Snakemake continues and must prevent a second call.
     """
     set_marks(folder, plan)
     command = [
@@ -100,18 +102,18 @@ def carry_out(folder, plan, cores, options, lock):
     try:
         return child.wait()
     except (Interrupted, KeyboardInterrupt):
-        print("graindrive: stopping; what the runs have so far is kept for the next call", file=sys.stderr)
+        print("graindrive: stopping; the runs' data so far are kept for the next call", file=sys.stderr)
         end_group(child)
         raise
 
 
 def hear_interrupts():
-    """Let SIGINT through to Snakemake and the runs: a shell has it ignored in what it starts in the background."""
+    """Restore SIGINT for Snakemake and the runs: a shell makes background processes ignore it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def ours(cores, options):
-    """Return Snakemake's options, the user's last; marks are true, and locks are the campaign's own."""
+    """Return Snakemake's options, the user's last; Snakemake relies on the marks and uses no locks of its own."""
     manners = ["--keep-going", "--nolock", "--ignore-incomplete", "--rerun-triggers", "mtime", "--nocolor"]
     return ["--cores", str(cores), *manners, *options]
 
@@ -129,12 +131,12 @@ def end_group(child):
 
 
 def failures(folder, plan):
-    """Return {name of a run that is missing: last words of its log}."""
+    """Return {name of a missing run: last line of its log}."""
     return {run.name: last_words(folder / "logs" / f"{run.name}.log") for run in missing(folder, plan)}
 
 
 def last_words(log):
-    """Return the last line of a log that holds something."""
+    """Return the last line of a log that is not empty."""
     try:
         lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
     except FileNotFoundError:

@@ -1,7 +1,7 @@
-"""The plan of a campaign: from a YAML of values to checked, named runs; nothing is run or written here.
+"""The plan of a campaign: turns a YAML file of values into checked, named runs; this module runs and writes nothing.
 
     study: magnus                    # of studies/, or a file beside this one
-    report: magnus                   # the study's own; may be left out
+    report: magnus                   # the study's report; may be left out
     common: {mu: 0.5, width: 100}    # keys of the study, for all runs
     sweeps:                          # each a grid, or a list of grids: lists of values are crossed
       speed: {phi: [0.352, 0.818], v0: [0.5, 1, 2], seed: [1, 2]}
@@ -25,7 +25,7 @@ from ..base.plain_yaml import shortened
 from ..study import house, loaded
 from .plan_file import read_plan_file
 
-OWN_KEYS = {  # of a study, which a campaign sets itself
+OWN_KEYS = {  # keys of a study that only the campaign sets, with the reason
     "out": "the campaign names its run folders",
     "resume": "a campaign always resumes",
     "redo": "remove a run folder to have it made again",
@@ -47,8 +47,8 @@ class PlannedRun:
 class Plan:
     """A campaign.
 
-    `file` is named from the top of the checkout if it lies there; `origin` is the folder from which values name files;
-    `study` is a `Study` and `report` its `Report`, None where none is asked for; the runs stand in the order of the YAML.
+    `file` is the path from the top of the checkout if it lies there; files that values name are relative to the folder `origin`;
+    `study` is a `Study` and `report` its `Report`, None if no report is asked for; the runs are in the order of the YAML file.
     """
 
     name: str
@@ -61,13 +61,13 @@ class Plan:
 
 
 def read_plan(path):
-    """Return the checked `Plan` of the campaign file `path`; UsageError names the first thing that is wrong."""
+    """Return the checked `Plan` of the campaign file `path`; UsageError names the first mistake."""
     path = Path(path)
     content = read_plan_file(path)
     study_file = find_study(path, content["study"])
     study = loaded_for(path, study_file)
     report = report_of(path, study, content.get("report") or "", content["sweeps"])
-    with contextlib.chdir(path.parent):  # files that values name (an outline) are named from the campaign's file
+    with contextlib.chdir(path.parent):  # file names in values (an outline) are relative to the campaign's file
         runs = planned_runs(path, content, study)
     return Plan(path.stem, named_in_house(path), path.resolve().parent, study, study_file, report, runs)
 
@@ -104,7 +104,7 @@ def loaded_for(path, study_file):
 
 
 def report_of(path, study, name, sweeps):
-    """Return the study's `Report` of that name, None for no name; refuse another one, and sweeps that it would not look at."""
+    """Return the study's `Report` of that name, None for no name; refuse unknown reports, and sweeps that the report ignores."""
     report = study.report
     if not name:
         return None
@@ -131,13 +131,15 @@ def planned_runs(path, content, study):
             run = planned_run(place, values, study)
             known = runs.setdefault(run.name, run)
             if known.parameters.identity() != run.parameters.identity():
-                raise UsageError(f"{place}: two runs have the name {run.name} by chance; give one of them another seed")
+                raise UsageError(
+                    f"{place}: two different runs got the same name {run.name}; give one of them another seed"
+                )
             known.sweeps += [] if sweep in known.sweeps else [sweep]
     return list(runs.values())
 
 
 def grids_of(path, sweeps, common):
-    """Return [(sweep, its place in words, {key: list of values})] of all grids, checked for what they hold and how many runs."""
+    """Return [(sweep, its place for messages, {key: list of values})] of all grids, with checked content and number of runs."""
     found = []
     for sweep, grids in sweeps.items():
         place = f"{path}: sweep {one_line(sweep)}"
@@ -153,7 +155,7 @@ def grids_of(path, sweeps, common):
 
 
 def lists_of(place, grid):
-    """Return a mapping with each value as a list; UsageError if `grid` is none, or a list is empty."""
+    """Return a mapping with each value as a list; UsageError if `grid` is no mapping, or a list is empty."""
     if not isinstance(grid, dict):
         raise UsageError(f"{place} must be keys with values or lists of values, got {shortened(grid)}")
     for key, values in grid.items():
@@ -183,10 +185,10 @@ def planned_run(place, values, study):
 
 
 def run_name(p, study):
-    """Return the name of a run's folder: what differs from the study's own values, and the digest of all.
+    """Return the name of a run's folder: the values that differ from the study's defaults, and the digest of all values.
 
-    It depends on the parameters alone, so a campaign that is extended, or reordered, finds its runs again. Keys that only say
-    what is watched are in the digest, not in the words; those of the study come first, those of every study last.
+    It depends only on the parameters, so an extended or reordered campaign finds its runs again. Keys that do not change the
+    motion (`watches`) are in the digest, but not in the text; keys of the study come first, keys of every study last.
     """
     usual, identity = study.usual(p.scale).identity(), p.identity()
     keys = [key for key in study.parameters.__fields__ if key in identity and key not in p.watching()]
@@ -196,5 +198,5 @@ def run_name(p, study):
 
 
 def shortly(value):
-    """Return a value for a folder's name: numbers without needless digits, switches as 0 and 1."""
+    """Return a value for a folder's name: numbers without superfluous digits, switches as 0 and 1."""
     return f"{value:g}" if isinstance(value, (int, float)) else str(value)

@@ -6,7 +6,7 @@ from pathlib import Path
 from ..base import whole_files
 
 FILE = "campaign.json"
-NEEDED = {"name", "runs", "report"}  # without these it is no plan
+NEEDED = {"name", "runs", "report"}  # keys that every plan has
 
 
 class PlanError(Exception):
@@ -33,7 +33,7 @@ def write(folder, plan, program):
 
 
 def read(folder):
-    """Return what `write` left in a folder, a dict; PlanError if there is no such thing."""
+    """Return the dict that `write` stored in a folder; PlanError if there is none."""
     try:
         plan = json.loads((Path(folder) / FILE).read_text())
     except (FileNotFoundError, NotADirectoryError):

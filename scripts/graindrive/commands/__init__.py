@@ -1,1 +1,1 @@
-"""A study as a command: arguments, endings, exit codes; runs started from Python."""
+"""Runs a study as a command (arguments, messages, exit codes) or from Python."""

@@ -1,4 +1,4 @@
-"""Rows of YADE's batch tables (`yade-batch table study.py`), and the arithmetic that their numbers may hold."""
+"""Reads rows of YADE's batch tables (`yade-batch table study.py`), whose numbers may be arithmetic expressions."""
 
 import ast
 import math
@@ -18,7 +18,7 @@ OPERATORS = {
     ast.UAdd: operator.pos,
     ast.USub: operator.neg,
 }
-FUNCTIONS = (  # of `math`, none that a short text could keep busy for long
+FUNCTIONS = (  # of `math`; none of them takes long for arguments that fit into a short text
     *("sqrt", "exp", "log", "log2", "log10", "pow", "hypot", "fabs", "floor", "ceil", "degrees", "radians"),
     *("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh"),
 )
@@ -29,8 +29,8 @@ def read_row(environment):
 
     The format is YADE's: a line of headings, `=` repeats the value above, `*` takes the default, `!NAME` columns belong
     to yade-batch, words may stand in quotes, `#` begins a comment. Raises UsageError if table or line cannot be read.
-    It is read here, for YADE's reader drops the last character of a table without a newline at its end, surplus values and
-    the first of two columns of one name.
+    We do not use YADE's reader, because it drops the last character of a table without a newline at its end, surplus values,
+    and the first of two columns with the same name.
     """
     table, _, line = environment.get("YADE_BATCH", "").rpartition(":")
     if not table:
@@ -54,20 +54,22 @@ def unreadable(table, line, reason):
 
 
 def row_of(text, line):
-    """Return {heading: text} of the row in that line, counted from 1, of a table's text; ValueError if there is none."""
+    """Return {heading: text} of the row in line number `line`, counted from 1, of a table's text; ValueError if there is none."""
     split = {
         number: words for number, full in enumerate(text.splitlines(), 1) if (words := full.partition("#")[0].split())
     }
     headings, *rows = split.items() or [(0, [])]
     if not line.isdecimal() or int(line) not in dict(rows):
-        raise ValueError(f"its rows are lines {', '.join(str(number) for number, _ in rows) or 'that it lacks'}")
+        raise ValueError(f"its rows are in lines {', '.join(str(number) for number, _ in rows) or '(none)'}")
     bare = [heading.rstrip("!") for heading in headings[1]]
     if len(set(bare)) < len(bare):
-        raise ValueError(f"two columns have one name, {' '.join(headings[1])}; keep one")
+        raise ValueError(f"two columns have the same name, {' '.join(headings[1])}; keep one")
     found = {}
     for number, words in rows:
         if len(words) != len(bare):
-            raise ValueError(f"line {number} has {len(words)} values for {len(bare)} columns; write * for a default")
+            raise ValueError(
+                f"line {number} has {len(words)} values for {len(bare)} columns; write * for a default value"
+            )
         if "=" in words and not found:
             raise ValueError(f"'=' in line {number} has no value above it to repeat")
         found = {heading: found[heading] if word == "=" else word for heading, word in zip(headings[1], words)}
@@ -76,7 +78,7 @@ def row_of(text, line):
 
 
 def evaluated(text):
-    """Return the text of a number with its arithmetic done (`pi/4`, `2*sqrt(3)`), as YADE does; other text unchanged."""
+    """Return the value of an arithmetic expression (`pi/4`, `2*sqrt(3)`) as text, as YADE does; other text unchanged."""
     try:
         return repr(value_of(ast.parse(text, mode="eval").body))
     except (ArithmeticError, MemoryError, RecursionError, SyntaxError, TypeError, ValueError):
@@ -84,7 +86,7 @@ def evaluated(text):
 
 
 def value_of(node):
-    """Return the number that an expression of numbers, operators and functions of `math` stands for; ValueError for any other."""
+    """Return the value of an expression of numbers, operators and functions of `math`; ValueError for any other expression."""
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
         return node.value
     if isinstance(node, ast.Name) and isinstance(getattr(math, node.id, None), float):

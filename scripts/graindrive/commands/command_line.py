@@ -1,4 +1,4 @@
-"""From `key=value` arguments and YADE's batch tables to checked parameters, or to one line that says what is wrong."""
+"""Turns `key=value` arguments and rows of YADE's batch tables into checked parameters, or into a one-line error."""
 
 import os
 import sys
@@ -20,9 +20,9 @@ HELP_WORDS = ("help", "--help", "-h", "-help")
 def parameters_or_exit(study, arguments, environment=None):
     """Return the parameters of a `Study` for `key=value` arguments (without the script's name), or end the program.
 
-    What the user gives on the command line or in a row of YADE's batch table wins over what a file of parameters holds, an
-    argument @FILE; these over the levers that `accuracy` chooses, these over the values of the scale, and these over a preset
-    study's own. `help` prints what the study knows and exits 0; a bad argument is one line on stderr, exit 2.
+    Sources of values, the strongest first: the command line and the row of YADE's batch table, a file of parameters (an
+    argument @FILE), the levers that `accuracy` chooses, the values of the scale, the defaults of a preset study. `help` prints
+    all keys and exits with code 0; a bad argument prints one line on stderr and exits with code 2.
     """
     if any(argument in HELP_WORDS for argument in arguments):
         print(help_text(study))
@@ -35,7 +35,7 @@ def parameters_or_exit(study, arguments, environment=None):
 
 
 def parse(study, arguments, environment=None):
-    """Return the parameters of a `Study` for these arguments; raises UsageError at the first that is wrong."""
+    """Return the parameters of a `Study` for these arguments; raises UsageError for the first wrong one."""
     cls = study.parameters
     files = [argument[1:] for argument in arguments if argument.startswith("@")]
     given = from_batch_row(cls, os.environ if environment is None else environment)
@@ -61,7 +61,7 @@ def parse(study, arguments, environment=None):
 
 
 def added(cls, given, arguments):
-    """Return {key: text} of what is given and of further `key=value` arguments; UsageError for a key that is there already."""
+    """Return `given` ({key: text}) with further `key=value` arguments; UsageError for a key that is given twice."""
     given = dict(given)
     for argument in arguments:
         key, text = split(cls, argument)
@@ -74,7 +74,7 @@ def added(cls, given, arguments):
 
 
 def choice_by_accuracy(study, merged, values, given):
-    """Return the `Choice` of levers for the key accuracy; levers that the user gave are not in it."""
+    """Return the `Choice` of levers for the key accuracy; it leaves out levers that the user gave."""
     kept = {key: value for key, value in values.items() if key in study.levers}
     usual = {**merged, "out": merged.get("out") or "."}
 
@@ -94,7 +94,7 @@ def from_batch_row(cls, environment):
 
 
 def split(cls, argument):
-    """Return (key, text) of one `key=value`; raises UsageError with the nearest right spelling."""
+    """Return (key, text) of one `key=value` argument; UsageError suggests the nearest correct spelling."""
     key, sign, text = argument.partition("=")
     key = key.strip()
     bare = key.lstrip("-").replace("-", "_")
@@ -108,7 +108,7 @@ def split(cls, argument):
 
 
 def build(cls, merged, given):
-    """Return `cls(**merged)`; raises UsageError for the first value out of range, or for a condition between values."""
+    """Return `cls(**merged)`; UsageError for the first value out of range, or for a violated condition between values."""
     try:
         return cls(**merged)
     except ValidationError as error:
@@ -131,7 +131,7 @@ def folder_name(study, scale, given, cls):
 
 
 def help_text(study):
-    """Return all that help says of a `Study`: its keys, then its levers, its observables and what it costs."""
+    """Return the help text of a `Study`: its keys, then its levers, its observables and its cost."""
     parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
     return "\n\n".join(
         part
@@ -141,7 +141,7 @@ def help_text(study):
 
 
 def help_table(study):
-    """Return the table of keys: key, unit, default (and what a scale changes), meaning and what is allowed."""
+    """Return the table of keys: key, unit, default (and values of scales), meaning and allowed values."""
     cls, presets, defaults = study.parameters, study.presets, study.defaults
     rows = [("key", "unit", "default", "meaning")]
     runs = {scale: study.usual(scale) for scale in presets}
@@ -174,32 +174,32 @@ def levers_in_words(study):
 
 
 def shown_number(value):
-    """Return a number without needless digits, a word as it is."""
+    """Return a number without superfluous digits, a word unchanged."""
     return f"{value:g}" if isinstance(value, (int, float)) else value
 
 
 def observables_in_words(study):
-    """Return the paragraph of help on what the study measures; a star marks the headline."""
+    """Return the paragraph of help on the study's observables; a star marks the headline."""
     rows = [(f"{'*' if o.headline else ' '} {o.name}", o.unit, o.meaning) for o in study.observables]
     return aligned([("observables of summary.json (* the headline)", "unit", "meaning"), *rows]) if rows else ""
 
 
 def costs(study):
-    """Return the line of help that says what a run of each scale costs."""
+    """Return the line of help on the cost of a run of each scale."""
     if study.cost is None:
         return ""
     words = [f"{scale} {study.cost.in_words(study.usual(scale))}" for scale in study.presets]
-    return f"cost on one core, packing aside: {'; '.join(words)}"
+    return f"cost on one core, without the packing: {'; '.join(words)}"
 
 
 def aligned(rows):
-    """Return rows of cells as lines, all columns but the last padded to one width."""
+    """Return rows of cells as lines of text with aligned columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
     return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths)), row[-1]]).rstrip() for row in rows)
 
 
 def taken_text(p, key):
-    """Return for a key that is `auto` what is taken for it, "auto (46.2)"; "" for any other."""
+    """Return the derived value of a key that is `auto` as "auto (46.2)"; "" for any other key."""
     taken = p.taken()[key]
     return f"auto ({shown(taken)})" if getattr(p, key) is None and taken is not None else ""
 

@@ -1,4 +1,4 @@
-"""Manners of a study run as a command: no open port in batch mode, clear endings, true exit codes, no litter."""
+"""Runs a study as a command: no open port in batch mode, clear messages, correct exit codes, no files left behind."""
 
 import atexit
 import gc
@@ -20,15 +20,15 @@ from ..runs.run_folder import RunFolder
 from ..runs import run_place
 from ..runs.run_place import AlreadyComplete
 
-# Before anything imports matplotlib: its font list belongs in our cache, not in the home.
+# This must precede any import of matplotlib: its font list goes into our cache, not into the home folder.
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
 
 def main(study):
-    """Run a `Study` as a command and end the program as a command should.
+    """Run a `Study` as a command and end the program with the right exit code.
 
-    In batch mode (`yade -x`, or no terminal) the program exits: 0, 2 after a UsageError, 128 + n after signal n, 1 after any
-    other failure. In a terminal a good run returns to YADE's console.
+    In batch mode (`yade -x`, or no terminal) the exit code is 0 after success, 2 after a UsageError, 128 + n after signal n, 1
+    after any other failure. In a terminal a successful run returns to YADE's console.
     """
     output.forgive()
     leave_nothing_behind()
@@ -42,9 +42,9 @@ def main(study):
 
 
 def end(code):
-    """End the program with this exit code, also where HDF5 could not write out a file: its own end would crash on that.
+    """End the program with this exit code, even if HDF5 could not write a file (its own exit handler would then crash).
 
-    The run has ended by now: a second Ctrl-C would only break what the interpreter still does, with a traceback.
+    The run has ended by now, so Ctrl-C is ignored: it would only interrupt the interpreter's exit and print a traceback.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for stream in (sys.stdout, sys.stderr):
@@ -97,7 +97,7 @@ def made(study, p):
 
 
 def guarded(action, name):
-    """Call `action()`; return the exit code after saying on stderr what went wrong, if anything did."""
+    """Call `action()` and return the exit code; print a failure on stderr."""
     try:
         action()
         return 0
@@ -118,24 +118,27 @@ def guarded(action, name):
             traceback.print_exc()
         print(f"{name}: failed: {type(error).__name__}: {one_line(error, 500)}", file=sys.stderr)
         if is_full(error):
-            print(f"{name}: failed: the disk or the quota is full; make room, resume=1 then goes on", file=sys.stderr)
+            print(
+                f"{name}: failed: the disk or the quota is full; free some space, then continue with resume=1",
+                file=sys.stderr,
+            )
         return 1
 
 
 def is_debugging():
-    """True if $GRAINDRIVE_DEBUG asks for tracebacks of errors that need none."""
+    """True if $GRAINDRIVE_DEBUG asks for tracebacks of all errors."""
     return os.environ.get("GRAINDRIVE_DEBUG", "0") not in ("", "0")
 
 
 def is_batch():
-    """True under `yade -x` and wherever nobody sits at a terminal."""
+    """True under `yade -x` and without a terminal."""
     runtime = sys.modules.get("yade.runtime")
     asked = getattr(getattr(runtime, "opts", None), "exitAfter", False)
     return bool(asked) or not (sys.stdin is not None and sys.stdin.isatty())
 
 
 def close_servers():
-    """Close YADE's Python console (TCP 9000 or next) and XML-RPC server (21000 or next); RuntimeError if one stays.
+    """Close YADE's Python console (TCP 9000 or next) and XML-RPC server (21000 or next); RuntimeError if one stays open.
 
     YADE's program starts both before any script and keeps no reference to them. `yade-batch` then shows no progress on
     its web page; its queue and its exit codes do not need the servers.
@@ -178,7 +181,7 @@ def listening_ports():
 
 
 def socket_table(name):
-    """Return the lines of /proc/self/net/`name` without the heading; none where the kernel has no such table."""
+    """Return the lines of /proc/self/net/`name` without the heading; none if the kernel has no such table."""
     try:
         return Path("/proc/self/net", name).read_text().splitlines()[1:]
     except OSError:
@@ -186,7 +189,7 @@ def socket_table(name):
 
 
 def leave_nothing_behind():
-    """Have YADE's folder below /tmp removed at exit."""
+    """Arrange that YADE's folder below /tmp is removed at exit."""
     if "yade" in sys.modules:
         atexit.register(remove_yades_folder)
 

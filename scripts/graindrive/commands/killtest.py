@@ -1,11 +1,12 @@
-"""Kills studies of smoke size at random times, resumes them, and counts what differs from runs that nobody killed.
+"""Kills studies of smoke size at random times, resumes them, and counts the differences from runs that were not killed.
 
 usage: scripts/killtest [--kills N] [--study NAME] [--seed S] [--work DIR]
 
-Every trial starts a study, kills it (SIGKILL) at a random time of its work, in half of the cases kills the resumed run within
-the first second of its work, perhaps again, and then lets it end. A line a kill says what was done; the last line counts lost
-rows, differing bits of series, frames, fields and summary (times apart), tracebacks, and folders that are wedged: another exit
-code than 0, or something left beside the result. The exit code is 1 if any of them is not 0, and the trial's folder then stays.
+Every trial starts a study and kills it (SIGKILL) at a random time of its work. In half of the trials it also kills the resumed
+run within the first second of its work, perhaps several times, and then lets it end. One line is printed per kill. The last line
+counts lost rows, differing bits of series, frames, fields and summary (without times), tracebacks, and wedged folders, which
+means an exit code other than 0 or files left beside the result. The exit code is 1 if any of these numbers is not 0; the folder
+of such a trial is kept.
 """
 
 import argparse
@@ -30,7 +31,7 @@ from ..base.errors import UsageError
 from .headless import guarded
 
 NAME = "killtest"
-STUDIES = {  # at smoke size, with what shows most
+STUDIES = {  # at smoke size, with keys that test as much as possible
     "magnus": "scale=smoke travel=20 settle_travel=8 frames=4 spin_ratio=5".split(),
     "wiggle": "scale=smoke time=12 frames=6 fields=1".split(),
     "lift": "scale=smoke travel=12 frames=4 fields=1".split(),
@@ -39,13 +40,13 @@ STUDIES = {  # at smoke size, with what shows most
 }
 INTERVALS = (0.0, 0.1, 1.0)  # s between checkpoints
 TIMED = ("wall_s", "core_seconds", "peak_memory", "particle_steps_per_second", "continuum_core_seconds")
-AT_WORK = ("going on from step", "starting anew")  # what a run with resume=1 says when its folder is made
+AT_WORK = ("going on from step", "starting anew")  # messages of a run with resume=1 when its folder is made
 COUNTED = ("lost rows", "differing bits", "tracebacks", "wedged")
 
 
 @dataclass
 class Subject:
-    """A study under test: its folder, its run that nobody killed, and the seconds that this took once it was at work."""
+    """A study under test: its folder, its run that was not killed, and the working time of that run in seconds."""
 
     name: str
     place: Path
@@ -66,15 +67,15 @@ def read_arguments(arguments):
     parser = argparse.ArgumentParser(
         prog="scripts/killtest", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("--kills", type=int, default=200, help="how many kills (default: 200)")
-    parser.add_argument("--study", choices=sorted(STUDIES), help="only this one (default: all in turns)")
-    parser.add_argument("--seed", type=int, default=1, help="of the times of the kills (default: 1)")
+    parser.add_argument("--kills", type=int, default=200, help="number of kills (default: 200)")
+    parser.add_argument("--study", choices=sorted(STUDIES), help="test only this study (default: all in turn)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random times of the kills (default: 1)")
     parser.add_argument("--work", type=Path, help="folder to work in (default: a temporary one)")
     return parser.parse_args(arguments)
 
 
 def campaign(options):
-    """Make the whole runs, then kill until there were so many kills; return the exit code."""
+    """Make the reference runs, then carry out trials until the number of kills is reached; return the exit code."""
     if options.kills < 1:
         raise UsageError(f"kills={options.kills} must be at least 1")
     work = Path(tempfile.mkdtemp(prefix="killtest-")) if options.work is None else options.work.absolute()
@@ -94,7 +95,7 @@ def campaign(options):
 
 
 def prepare(name, work):
-    """Run a study to its end, twice, for its packing has to be made first; return the `Subject`."""
+    """Run a study to its end twice, because the first run also makes the packing; return the `Subject`."""
     for whole in (work / f"{name}-warm", work / f"{name}-whole"):
         process = start(name, whole, 60.0)
         heard = Heard(process)
@@ -147,13 +148,13 @@ def killed_and_resumed(subject, trial, chance, most):
 
 def say(subject, trial, count, when, words, out):
     """Print the line of one kill."""
-    last = [line for line in words.splitlines() if line.strip()][-1:] or ["nothing said yet"]
+    last = [line for line in words.splitlines() if line.strip()][-1:] or ["no output yet"]
     left = ", ".join(sorted(p.name for p in out.parent.iterdir())) or "nothing"
     print(f"{subject.name} {trial}: kill {count['kills']}, {when}: {last[0][:80]!r}, left {left}", flush=True)
 
 
 def kill_after(process, seconds, words):
-    """Kill a process so many seconds after it is at work; True if it still ran then. What it said is added to `words`."""
+    """Kill a process `seconds` after it began its work; True if it still ran. Its output is added to `words`."""
     heard = Heard(process)
     heard.at_work.wait()
     try:
@@ -165,7 +166,7 @@ def kill_after(process, seconds, words):
 
 
 class Heard:
-    """Listens to what a process says on stderr; `at_work` is set once it has its folder, or has ended."""
+    """Reads what a process prints on stderr; `at_work` is set when it has its folder, or has ended."""
 
     def __init__(self, process):
         self.process, self.lines, self.at_work = process, [], threading.Event()
@@ -181,13 +182,13 @@ class Heard:
         self.at_work.set()
 
     def text(self):
-        """Return all that was said, once the process has ended."""
+        """Return the whole output after the process has ended."""
         self.thread.join()
         return "".join(self.lines)
 
 
 def judge(subject, out, code, words):
-    """Compare a resumed run with the whole one; return a Counter of faults."""
+    """Compare a resumed run with the reference run; return a Counter of faults."""
     count = Counter()
     count["tracebacks"] = sum("Traceback" in text for text in words)
     left = sorted(p.name for p in out.parent.iterdir())
@@ -200,7 +201,7 @@ def judge(subject, out, code, words):
 
 
 def differences(whole, other):
-    """Return (rows that the other run lacks, bits in which its data and its summary differ)."""
+    """Return (number of rows that the other run lacks, number of bits in which its data and its summary differ)."""
     with h5py.File(whole / "run.h5") as a, h5py.File(other / "run.h5") as b:
         expected, found = ({n: d for n, d in datasets(file) if not n.startswith("parameters/")} for file in (a, b))
     lost = max(len(expected[n]) - len(found.get(n, ())) for n in expected if n.startswith("series/"))
@@ -225,7 +226,7 @@ def datasets(file):
 
 
 def differing_bits(one, other):
-    """Return in how many bits two arrays differ: all of the larger one where one is missing or they differ in shape or type."""
+    """Return the number of bits in which two arrays differ: all bits of the larger one if shapes or types differ."""
     if one is None or other is None or one.shape != other.shape or one.dtype != other.dtype:
         return 8 * max(array.nbytes for array in (one, other) if array is not None)
     a, b = (np.frombuffer(array.tobytes(), np.uint8) for array in (one, other))

@@ -1,13 +1,13 @@
-"""Names of run folders that a person can read: the study, what was given or varies, and a short digest where that is not all."""
+"""Makes readable names of run folders: the study, the keys given or varied, and a short digest if this is not all."""
 
 LONGEST = 96  # characters
 DIGITS = 8  # of a digest
 
 
 def readable(first, told, digest=""):
-    """Return `first-key=value-…` of a list of (key, text), as many whole pairs as `LONGEST` allows, then a digest if given.
+    """Return `first-key=value-…` for a list of (key, text), with as many whole pairs as `LONGEST` allows, and the digest.
 
-    Signs that a shell or a path reads in its own way become `_`.
+    Characters with a special meaning in a shell or a path become `_`.
     """
     ending = f"-{digest[:DIGITS]}" if digest else ""
     name = plain(first)

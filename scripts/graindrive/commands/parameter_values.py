@@ -1,4 +1,4 @@
-"""Values of parameters, from the command line and from files, as the kind that their key declares, or refused by name."""
+"""Converts values from the command line and from files to the type that their key declares, or refuses them by name."""
 
 import difflib
 import math
@@ -11,20 +11,20 @@ SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false":
 
 
 def require_key(cls, key):
-    """Raise UsageError with the nearest right spelling unless `key` is one of the class."""
+    """Raise UsageError with the nearest correct spelling unless `key` is a key of the class."""
     if key not in cls.__fields__:
         hint = nearest(str(key).lstrip("-").replace("-", "_"), cls.__fields__, "did you mean ", "? ")
         raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
 
 
 def nearest(word, words, before, after):
-    """Return the one of `words` closest to `word`, between `before` and `after`, or nothing if none is close."""
+    """Return the word of `words` closest to `word`, between `before` and `after`, or "" if none is close."""
     found = difflib.get_close_matches(str(word).lower(), list(map(str, words)), n=1, cutoff=0.5)
     return f"{before}{found[0]}{after}" if found else ""
 
 
 def argument_text(key, value):
-    """Return the argument as the user typed it, on one line."""
+    """Return `key=value` as the user typed it, on one line."""
     return f"{key}={one_line(value)}"
 
 
@@ -38,7 +38,7 @@ def refuse(field, text):
 
 
 def convert(field, text):
-    """Return the text of one value as the type that `field` declares; raises UsageError."""
+    """Return a value, given as text, as the type that `field` declares; raises UsageError."""
     if field.allow_none and text.lower() == "auto":
         return None
     kind = plain_type(field)
@@ -64,7 +64,7 @@ def finite(number):
 
 
 def whole(text):
-    """Return the integer that `text` writes, also as 1e5."""
+    """Return the integer that `text` stands for; 1e5 is allowed too."""
     try:
         return int(text)
     except ValueError:
@@ -78,7 +78,7 @@ def whole(text):
 
 
 def argument(parameters, key, value):
-    """Return a value of the file as the study's command line takes it; UsageError where it is of another kind than its key."""
+    """Return a value of a file as an argument of the command line; UsageError if its type is not that of its key."""
     require_key(parameters, key)
     field = parameters.__fields__[key]
     if isinstance(value, (dict, list)):
@@ -91,7 +91,7 @@ def argument(parameters, key, value):
 
 
 def is_of_kind(kind, value):
-    """True if a value of the file is what a key of that kind takes: bool, int, float, str, or None for a choice of words."""
+    """True if a value of a file has the type that a key takes: bool, int, float, str, or None for a choice of words."""
     if kind is bool:
         return isinstance(value, (bool, int)) and value in (0, 1)
     if kind in (int, float):
@@ -108,12 +108,12 @@ def is_number(text):
 
 
 def as_written(value):
-    """Return a value as it stands in the file."""
+    """Return a value as it is written in the file."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def arguments_of(path, parameters):
-    """Return what a file of parameters holds, `key: value` lines of YAML, as `key=value` arguments; UsageError if it is none."""
+    """Return the `key: value` lines of a YAML file of parameters as `key=value` arguments; UsageError for any other file."""
     content = read(path, "a file of parameters, key: value on each line")
     if not isinstance(content, dict):
         raise UsageError(f"{path} must hold key: value on each line, got {shortened(content)}")

@@ -1,13 +1,13 @@
-"""Does GrainLoop's energy ledger hold for a day of model time? A small scene with everything in it, watched at intervals.
+"""Tests whether GrainLoop's energy ledger closes over a day of model time, in a small scene with all features.
 
 Some sixty soft, light disks of 0.1 m and 100 kg/m^2 under Hertz contacts with history and friction lie between flat walls,
-under gravity and a lid that presses with a force; a clump of three beads is shaken sideways among them and sinks and rises
-as it likes. The time step is a thousandth of a second, a third of the critical one.
+under gravity and a lid that presses with a force; a clump of three beads is shaken sideways among them and moves freely up and
+down. The time step is a thousandth of a second, a third of the critical one.
 
-At every report ledger.csv gets a line: model time, the ledger's entries, and closure = |residual|/turnover, what all entries
-together fail to explain over the sum of all changes. The run fails where closure exceeds 1e-6. Drift is the slope of the
-residual against the turnover in the second half. A checkpoint follows every report; after kill -9 the same command goes on
-from it, with the bits of a run that was never stopped. summary.json appears when all is done.
+At every report ledger.csv gets a line: model time, the ledger's entries, and closure = |residual|/turnover, where the residual is
+the energy that the entries do not explain, and the turnover the sum of all changes. The run fails if closure exceeds 1e-6. Drift
+is the slope of the residual against the turnover in the second half. A checkpoint follows every report; after kill -9 the same
+command continues from it, with the same bits as a run that was never stopped. summary.json is written at the end.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from ..base.errors import Interrupted, UsageError
 from ..scenes.material import HertzHistoryMaterial
 from ..scenes.yade_march import YadeMarch
 
-BOUND = 1e-6  # of the energy turned over
+BOUND = 1e-6  # largest closure [-]
 TIME_STEP = 1e-3  # [s]
 DAY = 86400.0  # [s]
 WIDTH, LID, SPACING = 1.2, 0.75, 0.1  # of the box [m]; of the grid that grains start on [m]
@@ -41,7 +41,7 @@ STORED = ("kineticTranslation", "kineticRotation", "elasticNormal", "elasticTang
 
 
 def build(seed=1):
-    """Make the scene in YADE, before its first step; return its GrainLoop."""
+    """Make the scene in YADE; return its GrainLoop."""
     from yade import O
 
     O.reset()
@@ -60,7 +60,7 @@ def build(seed=1):
 
 
 def add_grains(rng):
-    """Put disks of 0.09 to 0.1 m on a square grid, but for the place of the bar."""
+    """Put disks of 0.09 to 0.1 m on a square grid, except at the place of the bar."""
     grid = np.arange(SPACING / 2, WIDTH, SPACING), np.arange(SPACING / 2, LID - SPACING / 2, SPACING)
     x, y = (axis.ravel() for axis in np.meshgrid(*grid))
     free = (np.abs(x - WIDTH / 2) > 0.22) | (np.abs(y - 0.35) > 0.12)
@@ -82,7 +82,7 @@ def add_shaken_bar(x, y):
 
 
 def row_of(loop):
-    """Return what ledger.csv keeps of this moment, in the order of COLUMNS."""
+    """Return the present row of ledger.csv, in the order of COLUMNS."""
     from yade import O
 
     energy = loop.energy
@@ -91,7 +91,7 @@ def row_of(loop):
 
 
 def rows_until(path, end):
-    """Return the rows of ledger.csv up to the model time `end`, shape (n, columns); a line that was cut is left out."""
+    """Return the rows of ledger.csv up to the model time `end`, shape (n, columns); an incomplete line is left out."""
     with open(path, newline="") as file:
         lines = [line for line in csv.reader(file) if len(line) == len(COLUMNS)][1:]
     rows = np.array(lines, float).reshape(-1, len(COLUMNS))
@@ -99,13 +99,13 @@ def rows_until(path, end):
 
 
 def rewrite(path, rows):
-    """Write ledger.csv anew with these rows, beside it and renamed."""
+    """Replace ledger.csv by these rows, in one step (by a rename)."""
     with whole_files.written(path) as beside, open(beside, "w", newline="") as file:
         csv.writer(file).writerows([COLUMNS, *(map(repr, map(float, row)) for row in rows)])
 
 
 def summary_of(rows, steps, grains, seconds):
-    """Return what the ledger says of the whole run, a flat dict; raises nothing, `passed` says it."""
+    """Return a flat dict that summarises the ledger of the whole run; it never raises, `passed` holds the verdict."""
     table = dict(zip(COLUMNS, np.asarray(rows, float).T))
     late = table["time"] >= table["time"][-1] / 2
     slope = np.polyfit(table["turnover"][late], table["residual"][late], 1)[0] if late.sum() > 1 else math.nan
@@ -135,7 +135,7 @@ def summary_of(rows, steps, grains, seconds):
 
 
 def soak(out, steps, block, on_report=None):
-    """Run up to `steps` steps in folder `out`, going on from its checkpoint if there is one; return the summary."""
+    """Run up to `steps` steps in the folder `out`, or continue from its checkpoint; return the summary."""
     from yade import O
 
     ledger, checkpoint, loop = out / "ledger.csv", out / "scene.checkpoint", build()
@@ -162,7 +162,7 @@ def soak(out, steps, block, on_report=None):
 
     timing = progress.run_blocks(YadeMarch(len(loop.ids)), max(0, steps - first), block, report, label="soaking")
     if not rows:
-        raise UsageError(f"steps={steps} are fewer than one report of {block}; ask for more, or shorter reports")
+        raise UsageError(f"steps={steps} is less than one report of {block} steps; give more steps, or shorter reports")
     return dict(summary_of(rows, O.iter, len(loop.ids), timing.seconds), steps_before=first)
 
 

@@ -1,4 +1,4 @@
-"""Runs started from Python: `run("wiggle", shape="star.csv", period=3)` makes a run, or finds it, and returns it opened."""
+"""Starts runs from Python: `run("wiggle", shape="star.csv", period=3)` makes a run, or finds it, and opens it."""
 
 import os
 import signal
@@ -16,12 +16,12 @@ DONE, REFUSED = 0, UsageError.exit_code
 
 
 def run(study, *, progress=True, **keys):
-    """Return the `Run` of a study with these keys, as `scripts/run STUDY key=value …` makes it, in a process of its own.
+    """Return the `Run` of a study with these keys; it is made as by `scripts/run STUDY key=value …`, in a new process.
 
-    `study` is one of this checkout's, or a .py file; `keys` are the study's, numbers, words and switches. A run that is there
-    already is not made again, one that was interrupted goes on with resume=True. Progress goes to stderr, line by line, if
-    asked for. Ctrl-C (a notebook's stop) ends the run, which keeps what it has. Raises UsageError for keys that the study
-    refuses and EngineError for a run that fails, with the study's own last words.
+    `study` is the name of a study of this checkout, or a .py file; `keys` are the study's keys with numbers, words or switches.
+    A run that exists is not made again; an interrupted run continues with resume=True. `progress` prints the run's progress on
+    stderr, line by line. Ctrl-C (a notebook's stop button) ends the run, which keeps its data. Raises UsageError for keys that
+    the study refuses, and EngineError for a run that fails, with the last line that the study printed.
     """
     file = study_file(study)
     known = loaded(file)
@@ -36,7 +36,7 @@ def run(study, *, progress=True, **keys):
 
 
 def study_file(study):
-    """Return the file of a study by its name in this checkout, or of a .py file; UsageError for neither."""
+    """Return the file of a study, given by its name in this checkout or as a .py file; UsageError for anything else."""
     if str(study).endswith(".py"):
         if not Path(study).is_file():
             raise UsageError(f"there is no file {one_line(study)}")
@@ -49,7 +49,7 @@ def study_file(study):
 
 
 def carried_out(command, progress):
-    """Run a command to its end; return None, or (exit code, last words) of one that did not end well."""
+    """Run a command to its end; return None after success, or (exit code, last line printed) after a failure."""
     environment = {"OMP_NUM_THREADS": "1", **os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     child = subprocess.Popen(
         command,

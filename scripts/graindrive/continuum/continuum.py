@@ -1,4 +1,4 @@
-"""The continuum solver as a `March`, and the keywords by which one makes it."""
+"""The continuum solver as a `March`, and averages of its fields."""
 
 import time
 import zipfile
@@ -8,15 +8,15 @@ import numpy as np
 from ..base import signals
 from ..base.errors import EngineError
 
-CHUNK = 20  # steps between two looks for signals
+CHUNK = 20  # steps between two checks for signals
 STATE = "flow.npz"  # file of a checkpoint
 
 
 class FlowMarch:
-    """A `TwoPhaseFlow` that goes on in steps; `size` counts its cells, `seconds` the processor's time of its steps [s].
+    """A `TwoPhaseFlow` that advances in steps; `size` is its number of cells, `seconds` the processor time of its steps [s].
 
-    `advance` raises EngineError with what the solver says and `advice`, `Interrupted` on a signal. After `load` the flow goes on
-    with the same bits.
+    `advance` raises EngineError with the solver's message and `advice`, `Interrupted` on a signal. After `load` the flow
+    continues with the same bits.
     """
 
     unit = "cell-steps"
@@ -36,7 +36,7 @@ class FlowMarch:
         return self.flow.time
 
     def advance(self, steps):
-        """Go on by so many steps."""
+        """Advance by `steps` steps."""
         while steps > 0:
             signals.check()
             some = min(steps, CHUNK)
@@ -53,7 +53,7 @@ class FlowMarch:
         np.savez(folder / STATE, seconds=self.seconds, **self.flow.state())
 
     def load(self, folder):
-        """Take up what `save` wrote; RuntimeError with the reason where that cannot be."""
+        """Load what `save` wrote; RuntimeError with the reason if this is impossible."""
         try:
             with np.load(folder / STATE) as file:
                 state = {name: file[name] if file[name].ndim else file[name].item() for name in file.files}
@@ -82,7 +82,7 @@ class FieldMeans:
         self.sums["flux"] = np.zeros((blocks, *shape, 2))
 
     def add(self, block, flow):
-        """Add what the flow is now to a block, 0 … blocks - 1."""
+        """Add the present fields of the flow to a block, 0 … blocks - 1."""
         fraction = flow.fraction
         self.samples[block] += 1
         self.sums["fraction"][block] += fraction
@@ -98,7 +98,7 @@ class FieldMeans:
 
     @property
     def velocity(self):
-        """Velocity of the dense fluid, the mean weighted with its fraction, (blocks, ny, nx, 2); nan where there was none."""
+        """Velocity of the dense fluid, weighted with its fraction, (blocks, ny, nx, 2); nan where there was no dense fluid."""
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.sums["flux"] / np.where(self.sums["fraction"] > 0, self.sums["fraction"], np.nan)[..., None]
 
@@ -107,7 +107,7 @@ class FieldMeans:
         np.savez(folder / self.FILE, samples=self.samples, **self.sums)
 
     def load(self, folder):
-        """Take up what `save` wrote."""
+        """Load what `save` wrote."""
         with np.load(folder / self.FILE) as file:
             self.samples = file["samples"]
             self.sums = {name: file[name] for name in self.sums}

@@ -1,10 +1,10 @@
 """The continuum in a drum, model=continuum of the drum study: the flow, its steady state, and the fields that it leaves.
 
 The scene of Oba, Otsuki, "Scaling laws for velocity profile of granular flow in rotating drums" (2025), section II.3, in d,
-rho, g. Readings: within the wall's transition there is what lies beside it (the paper lets its layer turn with the wall, and
-that carries grains through the gas and gas under the bed); eta_max is ten times the paper's, with which the bed would turn
-5 % off rigid rotation, and results still depend on it (drum_levers.yaml); averages begin when the centre of mass has come to
-rest, after START_TURN at least.
+rho, g. It differs from the paper in three points. Within the wall's transition the phases are those beside it (in the paper this
+layer turns with the wall, which carries grains through the gas and gas under the bed). eta_max is ten times the paper's, with
+which the bed would differ by 5 % from rigid rotation; results still depend on it (drum_levers.yaml). Averages begin when the
+centre of mass is at rest, after at least START_TURN.
 
 `run` stores the group `fields/continuum` under the names of `fields.write_fields`: x (nx,), y (ny,) [d], the drum's axis at 0;
 samples (blocks,); area_fraction (blocks, ny, nx), the solid fraction, that of the bed times alpha; velocity (blocks, ny, nx, 2)
@@ -46,9 +46,7 @@ MOST_FILLING, LEAST_DEPTH = 0.9, 6  # of the drum; of the bed, in cells
 MOST_CROSSED = (
     0.5  # cells that may be crossed in a step, those of the grid's corners that turn with the wall among them
 )
-STIFFEST = (
-    1e8  # viscosity over density times step over cell^2: from ten times that on round-off is seen in the velocities
-)
+STIFFEST = 1e8  # largest eta dt/(rho cell^2): from ten times this value on round-off is visible in the velocities
 # Cell-steps per second of one core at continuum_dt=0.02, by cells across: on finer grids the viscosity's solver works more.
 RATES = ((75, 150, 300), (3e6, 2.2e6, 1.3e6))
 PART = "continuum"  # of a run with both models, in its checkpoints
@@ -56,7 +54,7 @@ NOTES = ("dt", "dt_over_critical", "n_grains", "steps", "particle_steps_per_seco
 
 
 def check_words(p):
-    """UsageError for a word that no run knows, also where no continuum is asked for."""
+    """Raise UsageError for an unknown pressure solver, also in runs without a continuum."""
     if p.pressure_solver and p.pressure_solver not in (known := engines.pressure_solvers()):
         raise UsageError(
             f"pressure_solver={one_line(p.pressure_solver)} is not known; leave it empty or take one of {', '.join(known)}"
@@ -64,35 +62,35 @@ def check_words(p):
 
 
 def check(p):
-    """UsageError for parameters of which no continuum can be made."""
+    """Raise UsageError for parameters that allow no continuum."""
     if p.model == "continuum" and (texts := [name for name in p.exports if name != "vtk"]):
         raise UsageError(
-            f"export={','.join(texts)} writes grains, and model=continuum has none; take export=vtk, which holds its fields"
+            f"export={','.join(texts)} needs grains, and model=continuum has none; give export=vtk, which writes fields"
         )
     if p.cells < FEWEST_CELLS:
         raise UsageError(
-            f"cells={p.cells} across the drum do not resolve its flow; take {FEWEST_CELLS} or more, the paper's are 75"
+            f"cells={p.cells} across the drum do not resolve its flow; give {FEWEST_CELLS} or more (the paper has 75)"
         )
     if p.filling > MOST_FILLING:
         raise UsageError(
-            f"filling={p.filling:g} leaves the continuum no free surface; it must be at most {MOST_FILLING:g}"
+            f"filling={p.filling:g} gives the continuum no free surface; it must be at most {MOST_FILLING:g}"
         )
     deep = (level_of(p) / p.drum_diameter + 0.5) * p.cells
     if deep < LEAST_DEPTH:
         raise UsageError(
             f"filling={p.filling:g} makes a bed {deep:.2g} cells deep, of which the wall's transition takes {TRANSITION}; it must"
-            f" be at least {LEAST_DEPTH} deep: raise filling or cells"
+            f" be at least {LEAST_DEPTH} cells deep; raise filling or cells"
         )
     if (crossed := p.omega * p.continuum_dt * (p.cells / 2 + SHELL)) >= MOST_CROSSED:
         raise UsageError(
-            f"continuum_dt={p.continuum_dt:g} lets the wall cross {crossed:.2g} cells in a step, but it must be less than"
+            f"continuum_dt={p.continuum_dt:g} lets the wall cross {crossed:.2g} cells in a step, and this must be less than"
             f" {MOST_CROSSED:g}; at this speed take less than {p.continuum_dt * MOST_CROSSED / crossed:.3g}"
         )
     stiff = p.largest_viscosity * GRAIN_MASS / BED_FRACTION * p.continuum_dt / (p.drum_diameter / p.cells) ** 2
     if stiff > STIFFEST:
         raise UsageError(
-            f"largest_viscosity={p.largest_viscosity:g} drowns the flow in round-off: eta dt/(rho cell^2) is {stiff:.2g}, at"
-            f" most {STIFFEST:g}; lower it to {p.largest_viscosity * STIFFEST / stiff:.2g} or less, or lower continuum_dt"
+            f"largest_viscosity={p.largest_viscosity:g} makes round-off larger than the flow: eta dt/(rho cell^2) is {stiff:.2g},"
+            f" over {STIFFEST:g}; lower it to {p.largest_viscosity * STIFFEST / stiff:.2g} or less, or lower continuum_dt"
         )
     if p.dynamic_friction < p.static_friction:
         raise UsageError(
@@ -106,9 +104,9 @@ def check(p):
         told = str(error)
         if p.viscosity == "split" and "time step" in told:  # the solver's ways out are no keys of the study
             told = told.partition("; ")[0] + "; lower continuum_dt or largest_viscosity, or take viscosity=full"
-        raise UsageError(f"of these keys no continuum can be made: {told}") from None
+        raise UsageError(f"these keys give no continuum: {told}") from None
     except RuntimeError as error:  # the pressure of the start is solved for at once
-        raise UsageError(f"tolerance={p.tolerance:g} is not reached by the pressure at the start: {error}") from None
+        raise UsageError(f"the initial pressure does not reach tolerance={p.tolerance:g}: {error}") from None
 
 
 def level_of(p):
@@ -149,7 +147,7 @@ def flow_of(p):
 
 
 def block_steps(p):
-    """Return the steps between two rows: a degree of turn, or less where the start would have too few."""
+    """Return the steps between two rows: one degree of turn, or less if the start would have too few rows."""
     degrees = min(1.0, START_TURN / (STRETCHES * 2 * FEWEST_ROWS), WINDOW / (4 * BLOCKS))
     return max(1, round(np.radians(degrees) / (p.omega * p.continuum_dt)))
 
@@ -160,13 +158,13 @@ def rows_of(p, degrees):
 
 
 def cell_steps(p):
-    """Return the cells times steps of a run that is steady at once."""
+    """Return cells times steps of a run whose averages begin as early as allowed."""
     steps = np.radians(START_TURN + WINDOW) / (p.omega * p.continuum_dt)
     return steps * (p.cells + 2 * SHELL) ** 2
 
 
 def seconds(p):
-    """Return the seconds that `run` takes one core."""
+    """Return the seconds that `run` takes on one core."""
     return cell_steps(p) / float(np.interp(p.cells, *RATES))
 
 
@@ -185,7 +183,7 @@ class Record(recording.Track):
 
 
 def grains_before(folder):
-    """Return the `Blocks` of the grains that ran before in a resumed run of both models, or None if they have not ended."""
+    """Return the `Blocks` of the grains in a resumed run of both models, or None if that part has not ended."""
     if not (folder.resumed and folder.resumed.get("part") == PART and "grains_summary" in folder.resumed):
         return None
     folder.summary.update(folder.resumed["grains_summary"])
@@ -199,9 +197,9 @@ def grains_before(folder):
 
 
 def run(p, folder, times=None):
-    """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or go on with it; return its `Blocks`.
+    """Solve the flow with the parameters `p` of the drum study in an open RunFolder, or resume it; return its `Blocks`.
 
-    `times` [sqrt(d/g)] are those at which pictures are taken; without them they are even in time, the last at the end.
+    Pictures are taken at `times` [sqrt(d/g)]; without them at equal intervals, the last at the end.
     """
     flow = flow_of(p)
     march, area = FlowMarch(flow, "lower continuum_dt"), flow.area  # that of the start, of a resumed run too
@@ -218,7 +216,7 @@ def run(p, folder, times=None):
 
 
 def announce(p, march):
-    """Say on stderr of what grid and step a run is, and if its bed is a liquid."""
+    """Print grid and time step of a run on stderr, and warn if its bed would flow like a liquid."""
     print(
         f"{march.size} cells of {p.drum_diameter / p.cells:.3g} d, dt = {p.continuum_dt:.3g} sqrt(d/g),"
         f" a turn in {2 * np.pi / p.omega:.4g} sqrt(d/g)",
@@ -227,13 +225,13 @@ def announce(p, march):
     if (creep := creep_over_turning(p)) > 1:
         print(
             f"largest_viscosity={p.largest_viscosity:g} lets the bed creep under its weight {creep:.2g} times as fast as the drum"
-            " turns: it flows as a liquid; raise largest_viscosity",
+            " turns, so the bed flows like a liquid; raise largest_viscosity",
             file=sys.stderr,
         )
 
 
 def creep_over_turning(p):
-    """Return the shear rate over Omega [-] at which eta_max bears mu_s p at the bottom of a half full drum."""
+    """Return the shear rate over Omega [-] at which eta_max gives the stress mu_s p at the bottom of a half full drum."""
     pressure = BED_FRACTION * p.drum_diameter / 2
     return p.static_friction * pressure / (p.largest_viscosity * GRAIN_MASS) / p.omega
 
@@ -260,7 +258,7 @@ def solid_fraction(alpha, flow):
 
 
 def record(p, folder, march, stage, before, going_on, area, times):
-    """March to the steady flow and over its averages, then store rows, pictures and fields; return the `Blocks`."""
+    """Run until the flow is steady and over the averages, then store rows, pictures and fields; return the `Blocks`."""
     flow = march.flow
     means = FieldMeans(BLOCKS, flow.fraction.shape)
     track = Record(folder if going_on else NotResumed, means)
@@ -289,13 +287,13 @@ def record(p, folder, march, stage, before, going_on, area, times):
 
 
 class NotResumed:
-    """Stands for a run folder where a part of a resumed run begins anew."""
+    """Replaces a run folder if a part of a resumed run starts from its beginning."""
 
     resumed = None
 
 
 def row_of(p, march):
-    """Return what is known of the flow now: time, turn [degrees], the angle of the bed's centre of mass [degrees], its speed."""
+    """Return the present state: time, turn [degrees], angle of the bed's centre of mass [degrees], its speed."""
     flow = march.flow
     x, y = grid_of(p)
     weight = flow.fraction * (flow.openness >= 1)
@@ -353,7 +351,7 @@ def keep(p, folder, march, track, means, area, stage):
 
 
 def summarize(p, folder, march, stage, columns, torque):
-    """Store what the rows and the march itself say, and say on stderr if the flow still drifted."""
+    """Summarize the rows and the march, and warn on stderr if the flow still drifted."""
     beside = "" if p.model == "continuum" else "continuum_"
     start = stage["average_row"]
     angle = block_mean(columns["centre_angle"][start:])
@@ -362,7 +360,7 @@ def summarize(p, folder, march, stage, columns, torque):
     steady = is_steady(columns["turn"][: start + 1], columns["centre_angle"][: start + 1], START_TURN)
     if not steady:
         print(
-            f"the continuum still drifted after {columns['turn'][start]:.3g} degrees, where its averages begin",
+            f"the continuum still drifted after {columns['turn'][start]:.3g} degrees, when its averages began",
             file=sys.stderr,
         )
     folder.summarize(

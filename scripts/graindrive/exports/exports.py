@@ -1,6 +1,6 @@
-"""A run's frames for other programs: ParaView (`vtk/`), OVITO and ASE (`frames.xyz`), LAMMPS and OVITO (`frames.lammpstrj`).
+"""Writes a run's frames for ParaView (`vtk/`), OVITO and ASE (`frames.xyz`), LAMMPS and OVITO (`frames.lammpstrj`).
 
-A format with `.gz` behind its name writes the same text compressed, some three times smaller; OVITO and ASE read it as it is.
+A format whose name ends in `.gz` writes the same text compressed, some three times smaller; OVITO and ASE can read it directly.
 """
 
 import gzip
@@ -13,7 +13,7 @@ from ..postproc.reader import Run, RunError
 
 
 class Frames:
-    """The frames of a run in the order of time, read anew from the file each time they are gone through."""
+    """The frames of a run in the order of time; each iteration reads them from the file again."""
 
     def __init__(self, run):
         self.run = run
@@ -23,7 +23,7 @@ class Frames:
 
 
 def check(formats):
-    """Raise UsageError if a format needs what is not installed."""
+    """Raise UsageError if a format needs a package that is not installed."""
     if "vtk" in formats:
         vtk_export.modules()
 
@@ -31,8 +31,7 @@ def check(formats):
 def write(path, formats):
     """Write the frames, and for vtk the fields, of the run folder `path` in each of `formats`, each in one step.
 
-    Raises RunError for a run whose frames do not tell the box's period, as those of older versions, and for one that holds
-    nothing to write.
+    Raises RunError for a run without the box's period in its frames (from an older version), and for one without data to write.
     """
     check(formats)
     for name in formats:
@@ -41,20 +40,20 @@ def write(path, formats):
             raise RunError(lacking)
         if run.frame_names and "period" not in run.labels(f"frames/{run.frame_names[0]}")[1]:
             raise RunError(
-                f"{path} holds frames of an older version, without the box's period; run it again to export them"
+                f"{path} holds frames of an older version, without the box's period; make the run again to export them"
             )
         WRITERS[name](run, units_of(run))
 
 
 def nothing_for(name, run):
-    """Return in words that a run holds nothing that the format `name` could write; "" where it does."""
+    """Return a message if a run holds no data for the format `name`; "" if it does."""
     if run.frame_names or name == "vtk" and run.names("fields"):
         return ""
     return f"{run.path} holds no frames{' and no fields' if name == 'vtk' else ''}: there is nothing for export={name}"
 
 
 def write_what_is_there(path, formats):
-    """Do as `write`, but say on stderr in place of raising where a run holds nothing for a format."""
+    """Do the same as `write`, but print a message instead of an error if a run holds no data for a format."""
     run = Run(path)
     lacking = {name: nothing_for(name, run) for name in formats}
     for words in filter(None, lacking.values()):
@@ -73,8 +72,8 @@ def units_of(run):
 
 
 def write_vtk(run, units):
-    """Write the folder `vtk`; an older one gives way to it when it is whole."""
-    from ..postproc import fields  # it draws, too: no run should wait for matplotlib
+    """Write the folder `vtk`; it replaces an older one when it is complete."""
+    from ..postproc import fields  # this imports matplotlib, which other exports do not need
     from ..postproc.drum.flow_frames import FlowFrames
 
     target, temporary = run.path / "vtk", run.path / ".vtk"

@@ -6,7 +6,7 @@ DIGITS = "%.12g"
 
 
 def box_of(frames):
-    """Return (low, high), arrays (3,), of a box around all grains of all frames; the period where there is one."""
+    """Return (low, high), arrays (3,), of a box around all grains of all frames; periodic axes have the box's period."""
     low, high, radius, periods = np.inf, -np.inf, 0.0, np.zeros(2)
     for frame in frames:
         d, periods = frame.disks(), frame.periods
@@ -19,7 +19,7 @@ def box_of(frames):
 
 
 def columns_of(frame):
-    """Return a frame's grains as columns, dict of (n,): all places inside the period, beads of the driven body too."""
+    """Return a frame's grains and the driven body's beads as columns, dict of (n,), with positions inside the period."""
     d = frame.disks()
     columns = {**d, "zero": np.zeros(len(d["x"]))}
     for axis, period in zip(frame.axes, frame.periods):
@@ -30,7 +30,7 @@ def columns_of(frame):
 
 
 def vectors_of(frame):
-    """Return the names of the columns of places, velocities and spins: x, y, z each, of disks the spin about z."""
+    """Return the names of the columns of positions, velocities and spins: x, y, z each; for disks only the spin about z."""
     if len(frame.axes) == 3:
         return ("x", "y", "z"), ("vx", "vy", "vz"), ("spin_x", "spin_y", "spin_z")
     return ("x", "y", "zero"), ("vx", "vy", "zero"), ("spin",)

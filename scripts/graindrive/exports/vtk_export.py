@@ -6,7 +6,7 @@ import numpy as np
 
 from .vtk_files import image, in_plane, modules, polydata, write, write_collection
 
-CORNERS = 72  # of the circle that stands for a single disk
+CORNERS = 72  # of the polygon that represents a single disk
 
 __all__ = ["export", "export_fields", "export_flow", "modules"]
 
@@ -20,12 +20,11 @@ def export(frames, folder, body=None, units=()):
 
     `frames` yields `graindrive.postproc.reader.Frame`s; `body` holds the arrays of the group `intruder`, `units` maps the
     frames' names to units. Grains are points with id, radius, velocity, spin and role, the driven body's disks among them
-    with role 2: in ParaView, glyph by sphere, scale by radius, factor 2. Contacts are lines from centre to centre with
-    ids i, j, slip, normal force (< 0 pulls) and tangential force (on i along z x n). The intruder is its outline as one
-    closed line; a single disk's is a circle with a spoke, which shows its turn, a drum's the ring of its wall's disks.
+    with role 2: in ParaView, use sphere glyphs, scaled by radius with factor 2. Contacts are lines from centre to centre with
+    ids i, j, slip, normal force (< 0: attractive) and tangential force (on i along z x n). The intruder is its outline as one
+    closed line; a single disk is a circle with a spoke, which shows its rotation, a drum is the ring of its wall's disks.
     Spheres have spin, slip and tangential force as vectors. A driven body among them is its beads, or, if it is a solid, a
-    surface of polygons; one without ends is
-    closed at the box's sides. Raises UsageError without python3-vtk9.
+    surface of polygons; an endless solid is closed at the box's sides. Raises UsageError without python3-vtk9.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -32,7 +32,7 @@ def in_plane(x, y):
 def polydata(points, kind, cells, arrays, units=(), *, on_points):
     """Return a vtkPolyData of `points` (n, 3), `cells` of kind "verts", "lines" or "polys", and named arrays on either.
 
-    `cells` is an array (m, k) of rows of points, or a list of such arrays with k of their own.
+    `cells` is an array (m, k) of rows of points, or a list of such arrays with different k.
     `units` maps names to units, which the arrays carry as VTK's key UNITS_LABEL.
     """
     core, model, _, support = modules()

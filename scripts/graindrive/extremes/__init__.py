@@ -1,1 +1,1 @@
-"""Extremes: small cases at the ends of what scenes may hold, each with a closed form to compare with or a guard to meet."""
+"""Extremes: small cases at the limits of what scenes may hold; each has a closed form or a guard that must act."""

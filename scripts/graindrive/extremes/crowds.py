@@ -27,7 +27,7 @@ def crowd(setting, dimensions, fraction, speed, **settings):
 
 
 def fractions(setting, *, dimensions):
-    """A crowd without friction and loss keeps its energy from a gas to a lattice that all but touches."""
+    """A crowd without friction and dissipation conserves energy, from a gas to a lattice that almost touches."""
     trials = dict(fraction=[], closure=[], searches=[])
     for fraction in FRACTIONS[dimensions]:
         loop = crowd(setting, dimensions, fraction, 1.0, trackEnergy=True)
@@ -67,7 +67,7 @@ SHEAR_STEP, SHEARED = 2e-4, 80  # sqrt(d/g); disks
 
 
 def shear(setting):
-    """Disks between sides that slide past each other for many strains: the ledger closes, with the work of the cell."""
+    """Disks in a sheared periodic cell, for many strains: the ledger closes, including the work of the cell."""
     rate = INERTIAL * math.sqrt(PRESSURE)
     cell = shear_cell.ShearCell(
         grains=SHEARED,

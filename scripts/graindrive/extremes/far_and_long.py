@@ -12,13 +12,13 @@ from .outcome import BOUND, GUARD, RIGHT, judged
 
 EPS = float(np.finfo(float).eps)
 DISTANCES = (1e2, 1e4, 1e6, 1e8, 1e10)  # d
-FAR = 1e6  # the one that is judged
-LASTING = 0.1  # contacts of so long [d/v]: 0.03 d deep
-GAP = 0.01014  # before they touch [d]: no whole number of steps, or rounding would decide when the dashpot begins
+FAR = 1e6  # the distance that is judged
+LASTING = 0.1  # duration of the contacts [d/v]: their overlap is 0.03 d
+GAP = 0.01014  # initial gap [d]: not a whole number of steps, or rounding would decide in which step the dashpot begins
 
 
 def far(setting, *, dimensions):
-    """An impact far from the origin against the same one near it: places are rounded to eps X, and with them the overlap."""
+    """An impact far from the origin and the same one near it: positions are rounded to eps X, and so is the overlap."""
     mass = mass_of(dimensions) / 2
     law, dt = spring(stiffness_for(LASTING, mass), 0.5), LASTING / STEPS
 
@@ -39,7 +39,7 @@ def far(setting, *, dimensions):
 
 
 def no_gravity(setting, *, dimensions):
-    """A spinning grain in free flight without gravity: x_0 + v t, and the spin that it began with."""
+    """A spinning grain in free flight without gravity: x_0 + v t, and constant spin."""
     steps, dt, velocity, spin = 20_000, 1e-3, (3.0, -2.0), 7.0
     ids = place([Grain((0, 0), velocity, spin=spin), Grain((1e3, 1e3))], spring(1.0), setting, dt, dimensions)
     advance(steps)
@@ -61,7 +61,7 @@ PARTS = 50
 
 
 def bound_pair(setting, *, dimensions):
-    """A grain swings on a held one under its weight for very many steps: energy, and place against leapfrog's own orbit."""
+    """A grain oscillates on a held one under its weight for many steps: energy, and position against leapfrog's own orbit."""
     from yade import O
 
     mass, k_n = mass_of(dimensions), 1e4

@@ -38,7 +38,7 @@ class Law:
 
 
 class Grain(NamedTuple):
-    """A grain before the start: place and velocity (x, y) or (x, y, z), radius, mass over that of density 1, spin about z.
+    """Initial state of a grain: position and velocity (x, y) or (x, y, z), radius, mass over that of density 1, spin about z.
 
     A `held` grain keeps its velocity.
     """
@@ -85,7 +85,7 @@ def body_of(grain, dimensions):
 
 
 def place(grains, law, setting, dt, dimensions=2, *, gravity=0.0, before=(), box=None, **settings):
-    """Put grains and the loop of `setting` into YADE; return their ids. Errors are those of GrainLoop's own checks.
+    """Put grains and the loop of `setting` into YADE; return their ids. Errors come from GrainLoop's own checks.
 
     `before` are drives, which stand before the integrator; `box` is the size of a periodic cell; `settings` go to GrainLoop.
     """
@@ -136,12 +136,12 @@ def yades_own(law, gravity, before):
 
 
 def advance(steps):
-    """Go on by so many steps; raises what a guard says."""
+    """Run some steps; raises the error of a guard."""
     yade_march.advance(int(steps))
 
 
 def said_by(action):
-    """Return what a guard says while `action()` runs, "" if nothing does."""
+    """Return the message of a guard during `action()`, "" if there is none."""
     try:
         action()
     except (EngineError, RuntimeError, ValueError, UsageError) as error:

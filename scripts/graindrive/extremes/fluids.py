@@ -1,4 +1,4 @@
-"""The drum's continuum at the ends of its largest viscosity: full, without a bed, half full; and what is refused."""
+"""The drum's continuum at extreme values of its largest viscosity: full, without a bed, half full; and refused keys."""
 
 from types import SimpleNamespace
 
@@ -30,7 +30,7 @@ def flow_of(viscosity, filling):
 
 
 def marched(flow, time, dt):
-    """Let a flow go on for a time."""
+    """Advance a flow by some time."""
     FlowMarch(flow, "lower continuum_dt").advance(round(time / dt))
     return flow
 
@@ -44,7 +44,7 @@ def off_rigid_rotation(p, flow):
 
 
 def full(_setting):
-    """A drum that is all bed comes to turn like a rigid body, at every largest viscosity."""
+    """A completely full drum finally turns like a rigid body, for every largest viscosity."""
     trials = dict(viscosity=[], error=[])
     for viscosity in VISCOSITIES:
         p, flow = flow_of(viscosity, 1.0)
@@ -59,7 +59,7 @@ def full(_setting):
 
 
 def spun_up(part, time):
-    """Return the velocity at a part of the radius over the wall's, a time [R^2/nu] after the wall began to turn; any shape."""
+    """Return the velocity over the wall's at a radius [R] and a time [R^2/nu] after the wall began to turn; any shape."""
     from scipy import special
 
     roots = special.jn_zeros(1, 60)
@@ -69,7 +69,7 @@ def spun_up(part, time):
 
 
 def gas(_setting):
-    """A drum that holds gas alone: the spin-up of a viscous fluid, at every largest viscosity (the gas has 1e-6 of it)."""
+    """A drum with gas only: the spin-up of a viscous fluid, for every largest viscosity (the gas has 1e-6 of it)."""
     trials = dict(viscosity=[], error=[])
     for viscosity in VISCOSITIES:
         p, flow = flow_of(viscosity, 0.0)
@@ -93,7 +93,7 @@ def gas(_setting):
 
 
 def area(_setting):
-    """A half full drum keeps the area of its bed, at every largest viscosity."""
+    """A half full drum conserves the area of its bed, for every largest viscosity."""
     trials = dict(viscosity=[], error=[], fastest=[])
     for viscosity in VISCOSITIES:
         p, flow = flow_of(viscosity, 0.5)
@@ -110,10 +110,10 @@ def area(_setting):
 
 
 def fillings(_setting):
-    """A drum that is all but full, or all but empty, is refused by name."""
+    """A drum that is almost full, or almost empty, is refused by name."""
     made = drum()
     asked = (
-        (dict(filling=0.95), "leaves the continuum no free surface"),
+        (dict(filling=0.95), "gives the continuum no free surface"),
         (dict(filling=0.02), "cells deep"),
         (dict(continuum_dt=5.0), "lets the wall cross"),
     )

@@ -1,4 +1,4 @@
-"""Two grains that meet: restitution, friction, spin, speed, ratios, stiffness, each against its closed form."""
+"""Impacts of two grains: restitution, friction, spin, speed, ratios, stiffness, each compared with its closed form."""
 
 import math
 
@@ -7,9 +7,11 @@ import numpy as np
 from .few_grains import Grain, Law, R, advance, duration, mass_of, place, said_by, spring, state_of
 from .outcome import BOUND, GUARD, RIGHT, judged, largest
 
-CONTACT = 1e-3  # how long a contact lasts [d/v], so that it turns by no more than that
-STEPS = 500  # of a contact
-SINGLE = 3e-3  # what contacts in single precision add: 6e-8 of d over an overlap of some 3e-4 d, over the contact
+CONTACT = 1e-3  # duration of a contact [d/v]; the contact turns by no more than this angle
+STEPS = 500  # number of steps of a contact
+SINGLE = (
+    3e-3  # additional error in single precision: 6e-8 d relative to an overlap of some 3e-4 d, summed over the contact
+)
 
 
 def meeting(speed, *, apart=1e-5, weights=(1, 1), radii=(R, R), spins=(0, 0), at=0.0):
@@ -20,14 +22,14 @@ def meeting(speed, *, apart=1e-5, weights=(1, 1), radii=(R, R), spins=(0, 0), at
 
 
 def met(pair, law, setting, dimensions, dt, steps, **settings):
-    """Let a pair go for so many steps; return the states of both, as `state_of` has them."""
+    """Run a pair for some steps; return the states of both, as from `state_of`."""
     ids = place(pair, law, setting, dt, dimensions, **settings)
     advance(steps)
     return [state_of(ident) for ident in ids]
 
 
 def stiffness_for(contact, mass):
-    """Return the spring of a linear contact that lasts so long."""
+    """Return the spring constant of a linear contact of that duration."""
     return mass * (math.pi / contact) ** 2
 
 
@@ -37,7 +39,7 @@ RESTITUTIONS = (0.01, 0.1, 0.5, 0.9, 1.0)
 
 
 def restitution(setting, *, dimensions):
-    """Restitution 0.01 to 1 under both laws that are given one, against the number given; first order in the step."""
+    """Restitution 0.01 to 1 for both laws that have this parameter; the error is of first order in the time step."""
     mass, trials = mass_of(dimensions) / 2, dict(law=[], given=[], error=[])
     for name in ("springDashpot", "hertzRestitution"):
         for e in RESTITUTIONS:
@@ -57,7 +59,7 @@ def restitution(setting, *, dimensions):
     sentence = (
         f"restitution {RESTITUTIONS[0]} to 1, linear and Hertz contacts of {4 * STEPS} steps: error furthest from 0"
     )
-    # The dashpot sees the velocity half a step before: omega dt/2 times at most b (1 - b^2)... below 2 omega dt.
+    # The dashpot uses the velocity half a step earlier: omega dt/2 times at most b (1 - b^2)... below 2 omega dt.
     tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)
     source = "e = exp(−π b/√(1 − b²)); Antypov, Elliott 2011 for Hertz"
     return judged(RIGHT, worst, 0.0, tolerance, source, sentence, trials)
@@ -85,7 +87,7 @@ def surface_velocity(states):
 
 
 def friction(setting, *, dimensions):
-    """mu 0 to 10 of linear contacts whose two springs swing alike: they slip all along, or stick and turn the velocity round."""
+    """mu 0 to 10 for linear contacts with equal frequencies: they slip all the time, or stick and reverse the velocity."""
     mass, inverse = mass_of(dimensions) / 2, 3 if dimensions == 2 else 3.5  # of m/m_sliding
     trials = dict(mu=[], found=[], expected=[])
     for mu in FRICTIONS:
@@ -110,7 +112,7 @@ SPIN_RATIOS = (10.0, 100.0, 1000.0)  # omega R/v
 
 
 def spin(setting, *, dimensions):
-    """A spinning grain meets one at rest, spin ratio up to 1000: it slips all along, so that the impulses are as mu."""
+    """A spinning grain hits one at rest, spin ratio up to 1000: it slips all the time, so the impulses' ratio is mu."""
     mass, mu = mass_of(dimensions) / 2, 0.5
     trials = dict(ratio=[], friction=[])
     for ratio in SPIN_RATIOS:
@@ -164,7 +166,7 @@ def driven_meeting(law, setting, dimensions, speed, dt, gap):
 
 
 def speed_limit(setting, *, dimensions):
-    """The speed of a driven grain at which the overlap guard stops a run: where m V^2/2 is the contact's energy at 0.1 R."""
+    """The speed of a driven grain at which the overlap guard stops a run: m V^2/2 equals the contact's energy at 0.1 R."""
     trials, guards = dict(law=[], ratio=[]), set()
     for law in SPEED_LAWS:
         mass = mass_of(dimensions)
@@ -185,7 +187,7 @@ def speed_limit(setting, *, dimensions):
 
 
 def passing(setting, *, dimensions):
-    """Whether a driven grain passes through a free one between two looks of the guard, at twice the limit's speed or more."""
+    """Whether a driven grain passes through a free one between two checks of the guard, at twice the limit's speed or more."""
     law = SPEED_LAWS[0]
     mass = mass_of(dimensions)
     limit = math.sqrt(2 * law.terms(LIMIT * R, mass=mass)["energy"] / mass)
@@ -216,7 +218,7 @@ def after_impact(m1, m2, e, v):
 
 
 def unequal(setting, dimensions, ratios, of_radius):
-    """Let a grain meet one of another radius, or of another mass; return the worst error of the velocities, and trials."""
+    """Let a grain hit one of another radius or mass; return the worst error of the velocities, and trials."""
     e, trials = 0.5, dict(ratio=[], error=[])
     for ratio in ratios:
         radii, weights = ((R, R * ratio), (1, 1)) if of_radius else ((R, R), (1, ratio))
@@ -257,7 +259,7 @@ RING = 60  # small grains
 
 
 def ring(setting):
-    """Sixty disks meet a disk of fifty times their radius at once: each is found, and comes back as it came."""
+    """Sixty disks hit a disk of fifty times their radius at once: each contact is found, and each disk is reflected."""
     law = spring(stiffness_for(CONTACT, mass_of(2)), 1.0)
     big = 50 * R
     angles = 2 * math.pi * np.arange(RING) / RING
@@ -284,7 +286,7 @@ STIFFNESSES = (1e-12, 1e-6, 1.0, 1e6, 1e12, 1e18, 1e24)
 
 
 def stiffness(setting, *, dimensions):
-    """Springs from 1e-12 to 1e24 at a speed that goes with them: the same impact in other units."""
+    """Springs from 1e-12 to 1e24, with speeds chosen so that all impacts are the same in other units."""
     e, mass, trials = 0.5, mass_of(dimensions) / 2, dict(stiffness=[], error=[])
     for k_n in STIFFNESSES:
         law = spring(k_n, e)

@@ -1,4 +1,4 @@
-"""What a case at an extreme is, and what comes out of it: the right answer, a guard, a documented bound, or a wrong answer."""
+"""A case at an extreme and its outcome: the right answer, a guard, a documented bound, or a wrong answer."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,7 @@ LOOPS, PRECISIONS = ("grain", "yade"), ("double", "single")
 
 @dataclass(frozen=True)
 class Setting:
-    """How a case is run: `loop` and `precision` as in every study, `steps` of the bound pair, `strain` of the sheared cell."""
+    """Settings of a case: `loop` and `precision` as in every study, `steps` of the bound pair, `strain` of the sheared cell."""
 
     loop: str = "grain"
     precision: str = "double"
@@ -26,10 +26,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came out: a `word` of WORDS, the number `measured`, the one `expected` by `source`, and how far apart they may be.
+    """Outcome of a case: a `word` of WORDS, the number `measured`, the number `expected` by `source`, and the tolerance.
 
-    Numbers are ratios or errors without a unit. `sentence` says what was tried and found; `trials` are columns (n,) of numbers
-    or words, one row a trial, for figures.
+    Numbers are ratios or errors without a unit. `sentence` describes the test and its result; `trials` are columns (n,) of
+    numbers or words, one row per trial, for figures.
     """
 
     word: str
@@ -42,15 +42,15 @@ class Outcome:
 
     @property
     def error_over_bound(self):
-        """How much of its tolerance the case uses up [-]; above 1 the answer is wrong."""
+        """Difference of measured and expected number over the tolerance [-]; above 1 the answer is wrong."""
         return abs(self.measured - self.expected) / self.tolerance
 
 
 @dataclass(frozen=True)
 class Case:
-    """One extreme: what it is in words, and the function of a `Setting` that returns its `Outcome`.
+    """One extreme: its description, and the function that takes a `Setting` and returns its `Outcome`.
 
-    `loops` and `precisions` are those that mean something to it.
+    `loops` and `precisions` are those to which it applies.
     """
 
     meaning: str
@@ -62,14 +62,14 @@ class Case:
 def judged(word, measured, expected, tolerance, source, sentence, trials=None):
     """Return the `Outcome` with this word if the number is as expected, else with `wrong`."""
     holds = math.isfinite(measured) and abs(measured - expected) <= tolerance
-    measured = measured if math.isfinite(measured) else 1e30  # a number that tells against any claim
+    measured = measured if math.isfinite(measured) else 1e30  # a number that contradicts any claim
     return Outcome(word if holds else WRONG, measured, expected, tolerance, source, sentence, trials or {})
 
 
 def largest(holds, low, high, resolution):
     """Return the largest number for which `holds`, by bisection in the logarithm: true at `low`, not at `high`.
 
-    Returns nan if it does not hold at `low`, infinity if it holds at `high`; the result is sharp to a part `resolution`.
+    Returns nan if it does not hold at `low`, infinity if it holds at `high`; `resolution` is the relative accuracy.
     """
     if not holds(low):
         return math.nan

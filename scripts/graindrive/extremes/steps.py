@@ -1,4 +1,4 @@
-"""The largest stable time step: of a pair under every law, against the normal and sliding, and of crystals."""
+"""The largest stable time step: of a pair under every law, for normal and tangential motion, and of crystals."""
 
 import math
 
@@ -10,9 +10,9 @@ from .few_grains import CLOSE, Grain, Law, R, advance, duration, lattice, mass_o
 from .outcome import BOUND, GUARD, RIGHT, judged, largest
 
 GRIP = 1e9  # a friction coefficient that no contact here reaches
-SHALLOW, DEEP = 1e-3, 0.1  # overlaps [R]: of the pair whose motion is watched, and that of GrainLoop's own check
-FAINT = 1e-8  # overlap of a pair that slides [R]: pressed by more it would tip over within the time that it is watched
-BLOCKS, BLOCK, ODD = 8, 500, 7  # how long a pair is watched [steps], and how often towards the end
+SHALLOW, DEEP = 1e-3, 0.1  # overlaps [R]: of the observed pair, and of GrainLoop's own check
+FAINT = 1e-8  # overlap of a pair that slides [R]: with more it would tip over during the observation
+BLOCKS, BLOCK, ODD = 8, 500, 7  # blocks and steps of a block; then as many more checks as steps between them
 START, GROWN = 1e-7, 1e3  # first deviation over the overlap, and its growth that counts as unstable
 RESOLUTION = 5e-4  # of the bisection
 # A strongly damped motion grows by a part 1 + dt/dt_crit - 1 a step or more: 4000 steps see 2 parts in a thousand.
@@ -43,7 +43,7 @@ def theory(law, dimensions, overlap, sliding):
 
 
 def pressed_pair(law, setting, dimensions, dt, overlap, *, sliding):
-    """Put two grains that a constant force presses together into YADE, a little off their balance; return their ids."""
+    """Put two grains that a constant force presses together into YADE, a little out of equilibrium; return their ids."""
     from yade import O
 
     depth = overlap * R
@@ -61,7 +61,7 @@ def pressed_pair(law, setting, dimensions, dt, overlap, *, sliding):
 
 
 def deviation(ids, balance, sliding):
-    """Return how far the pair is from its balance: its distance, or the velocity of one surface along the other."""
+    """Return the deviation of the pair from equilibrium: its distance, or the velocity of one surface along the other."""
     (x1, v1, w1), (x2, v2, w2) = map(state_of, ids)
     return abs(v1[1] - v2[1] + R * (w1 + w2)) if sliding else abs(x2[0] - x1[0] - balance)
 
@@ -73,7 +73,7 @@ def stays(law, setting, dimensions, dt, overlap, *, sliding):
         advance(BLOCK)
         if not deviation(ids, balance, sliding) < GROWN * start:
             return False
-    for _ in range(ODD):  # a mode that turns round every step may stand at zero when it is looked at
+    for _ in range(ODD):  # a mode that changes sign every step may be zero at the time of a check
         advance(ODD)
         if not deviation(ids, balance, sliding) < GROWN * start:
             return False
@@ -81,7 +81,7 @@ def stays(law, setting, dimensions, dt, overlap, *, sliding):
 
 
 def guarded_step(law, setting, dimensions, sliding):
-    """Return the largest step that GrainLoop takes for two grains apart, over theory at 0.1 R, and what it said to others."""
+    """Return the largest step that GrainLoop accepts for two separate grains, over theory at 0.1 R, and its refusals."""
     law, words = Law(law.LAW, law.numbers, GRIP if sliding else 0.0), set()
     expected = theory(law, dimensions, DEEP, sliding)
 
@@ -132,7 +132,7 @@ ALLOWED = 0.3  # an overlap that a user may allow [R]
 
 
 def deep_step(setting, *, dimensions):
-    """The step up to which GrainLoop takes a scene whose grains may be pressed by 0.3 R, over the critical one there."""
+    """The largest step that GrainLoop accepts for an allowed overlap of 0.3 R, over the critical one at that overlap."""
     law = LAWS["hertz_restitution"]
     expected = theory(law, dimensions, ALLOWED, False)
 
@@ -161,7 +161,7 @@ EDGE = {2: 6, 3: 8}  # omega^2 over k/m of its fastest mode, at the edge of its 
 
 
 def crystal(setting, dimensions, dt, law):
-    """Put a close-packed crystal, a little squeezed, into YADE, at rest but for noise; return the ids and the noise."""
+    """Put a slightly compressed close-packed crystal into YADE, at rest except for noise; return the ids and the noise."""
     at, box = lattice(dimensions, CLOSE[dimensions] / (1 - SQUEEZED) ** dimensions)
     noise = 1e-3 if setting.single else 1e-9  # above what rounding of forces does
     speeds = np.zeros((len(at), 3))
@@ -187,7 +187,7 @@ def crystal_step(setting, dimensions, law, pair):
 
 
 def stable_crystal(setting, *, dimensions):
-    """The largest step of a crystal without friction over that of a pair, from its fastest mode; and what comes beyond."""
+    """The largest step of a crystal without friction over that of a pair, from its fastest mode; and what larger ones do."""
     law = spring(1e6)
     pair = theory(law, dimensions, SHALLOW, False)
     found, expected = crystal_step(setting, dimensions, law, pair), math.sqrt(2 / EDGE[dimensions])

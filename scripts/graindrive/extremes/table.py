@@ -1,4 +1,4 @@
-"""The table of cases: a name, what it is, the function that runs it, and which loops and precisions mean something to it."""
+"""The table of cases: a name, a description, the function that runs it, and the loops and precisions that apply to it."""
 
 from functools import partial
 
@@ -16,7 +16,7 @@ def in_both(name, meaning, function, **limits):
 
 
 def step_cases():
-    """Return the cases of the largest stable step of every law, in the dimensions that it knows."""
+    """Return the cases of the largest stable step of every law, in the dimensions in which the law exists."""
     made = {}
     for law in steps.LAWS:
         meaning = f"largest stable step, law {law.replace('_', ' ')}"

@@ -1,1 +1,1 @@
-"""Time loops as Python sees them: GrainLoop for a scene of YADE's, what it carries over, and a run as a March."""
+"""Time loops: replaces YADE's loop by GrainLoop and back, transfers contacts and settings, and defines `March`."""

@@ -1,4 +1,4 @@
-"""What contacts remember, the tangential springs: from YADE's interactions to GrainLoop's springs and wallSprings, and back."""
+"""Transfers the tangential springs of contacts from YADE's interactions to GrainLoop's springs and wallSprings, and back."""
 
 from .loop_laws import only
 
@@ -10,10 +10,10 @@ REMEMBERED = {
 
 
 def springs_of(contacts, dimensions):
-    """Return what the present contacts of an InteractionLoop remember, as GrainLoop's attributes springs and wallSprings.
+    """Return the tangential springs of the present contacts of an InteractionLoop, in the form of springs and wallSprings.
 
-    Of disks id, id, number along z x n; of spheres id, id and the vector of the first against the second. In wallSprings a
-    solid stands first, and the vector is that of the grain against it.
+    For disks: id, id, number along z x n; for spheres: id, id and the vector of the first against the second. In wallSprings
+    the solid comes first, and the vector is that of the grain against the solid.
     """
     from yade import O
 
@@ -24,7 +24,7 @@ def springs_of(contacts, dimensions):
             remembered = getattr(contact.phys, attribute)
             x, y, _ = contact.geom.normal
             along = remembered if dimensions == 3 else [x * remembered[1] - y * remembered[0]]
-            if is_solid(contact.id1):  # YADE's first body; along z x n the number is the same seen from either side
+            if is_solid(contact.id1):  # YADE's first body; the number along z x n is the same for both sides
                 at_solids += [contact.id1, contact.id2, *(along if dimensions == 2 else -along)]
             else:
                 springs += [contact.id1, contact.id2, *along]
@@ -39,7 +39,7 @@ def is_solid(ident):
 
 
 def give_springs(contacts, loop):
-    """Have the present contacts of an InteractionLoop remember what GrainLoop's springs and wallSprings say, or nothing."""
+    """Set the tangential springs of the present contacts of an InteractionLoop from GrainLoop's springs and wallSprings."""
     from yade import O
 
     attribute = REMEMBERED.get(type(only(contacts.lawDispatcher.functors, "Law2_")).__name__, "slip")
@@ -53,16 +53,16 @@ def give_springs(contacts, loop):
 
 
 def by_ids(numbers, dimensions):
-    """Return (id, id) -> spring of a list of GrainLoop's."""
+    """Return {(id, id): spring} for a list in GrainLoop's form."""
     width = 3 if dimensions == 2 else 5
     rows = (numbers[k : k + width] for k in range(0, len(numbers), width))
     return {(int(row[0]), int(row[1])): row[2:] for row in rows}
 
 
 def spring_between(remembered, contact, dimensions):
-    """Return the spring of one of YADE's interactions as a vector, of `remembered`, (id, id) -> numbers; zero if it has none.
+    """Return the spring of a YADE interaction as a vector, from `remembered`, {(id, id): numbers}; zero if it has none.
 
-    Exchanging the two sides turns a vector round; the number of disks, along z x n, stays.
+    Exchanging the two sides reverses a vector; the number along z x n of disks keeps its sign.
     """
     from yade.minieigenHP import Vector3
 

@@ -1,11 +1,11 @@
-"""Does a scene that was written for YADE's loop hold disks in a plane or spheres in space?"""
+"""Decides whether a scene written for YADE's loop holds disks in a plane or spheres in space."""
 
 import numpy as np
 
 from ..lazily import engines
 from ..base.errors import UsageError
 
-OUT_OF_PLANE = frozenset("zXY")  # degrees of freedom that lead out of a plane z = const
+OUT_OF_PLANE = frozenset("zXY")  # degrees of freedom that take a body out of a plane z = const
 
 
 def of_scene(newton):
@@ -13,8 +13,8 @@ def of_scene(newton):
 
     It is 3 if some sphere or clump may leave the plane (not all of z, X, Y are in its blockedDOFs) and something takes
     bodies out of it: centres of spheres at different z, a body that moves along z or turns about x or y, or gravity
-    along z. Bodies that lie in one plane and are at rest across it stay there, whatever is blocked: such a scene is one
-    of disks. What drives, forces and other engines will do is not asked.
+    along z. Bodies that lie in one plane and do not move out of it stay there, whatever is blocked: such a scene holds
+    disks. The function does not consider what drives, forces and other engines will do.
     """
     from yade import O
 
@@ -26,12 +26,12 @@ def of_scene(newton):
 
 
 def is_grain_or_clump(body):
-    """True for spheres and clumps; members move with their clump, and bodies of other shapes do not tell."""
+    """True for spheres and clumps; members move with their clump, and bodies of other shapes do not count."""
     return body.isClump or (not body.isClumpMember and type(body.shape).__name__ == "Sphere")
 
 
 def spheres_lie_in_one_plane():
-    """True if all spheres have one z to 1e-9 of their radii, as GrainLoop demands it of disks."""
+    """True if all spheres have the same z to 1e-9 of their radii, as GrainLoop requires for disks."""
     from yade import O
 
     table = engines.body_table(O._sceneObj)
@@ -42,7 +42,7 @@ def spheres_lie_in_one_plane():
 def periods_of_scene(periods, dimensions):
     """Return the periods along x, y, z [m] for GrainLoop: those given, (x, y) of disks or (x, y, z), or those of O.cell.
 
-    UsageError for another number of them.
+    UsageError for a wrong number of periods.
     """
     from yade import O
 
@@ -57,7 +57,7 @@ def periods_of_scene(periods, dimensions):
     if len(given) != 3:
         wanted = "(x, y)" if dimensions == 2 else "(x, y, z)"
         raise UsageError(
-            f"periods of a scene of {'disks' if dimensions == 2 else 'spheres'} must be {wanted}, 0 where it does not"
-            f" repeat, got {given}; give dimensions=2 or 3 where the scene was taken for the other"
+            f"periods of a scene of {'disks' if dimensions == 2 else 'spheres'} must be {wanted}, 0 along axes that are"
+            f" not periodic, got {given}; give dimensions=2 or 3 if the scene was taken for the other kind"
         )
     return given

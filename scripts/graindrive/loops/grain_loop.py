@@ -9,13 +9,13 @@ from ..lazily import engines
 from . import loop_laws, stand_ins, take_over, take_over_spheres
 from ..base.errors import UsageError
 
-TAG = "graindrive.exchange"  # in O.tags, which O.save keeps: which exchange the scene's GrainLoop comes from
-KEPT = 16  # exchanges, the oldest go first: scenes that were reset leave theirs behind
+TAG = "graindrive.exchange"  # key in O.tags, which O.save keeps: it names the exchange that made the scene's GrainLoop
+KEPT = 16  # largest number of stored exchanges; the oldest are dropped first, since reset scenes leave theirs behind
 
 
 @dataclass(frozen=True)
 class Exchange:
-    """One take-over: YADE's loop, the energy tracker by which its scene is known, and the GrainLoop's name."""
+    """One exchange: YADE's loop, the energy tracker that identifies its scene, and the GrainLoop's name."""
 
     loop: take_over.Loop
     scene: object
@@ -28,24 +28,24 @@ exchanged = {}  # tag of a scene -> Exchange
 def use_grain_loop(periods=None, dimensions=None, **settings):
     """Replace YADE's four engines in O.engines by one GrainLoop with the same law, materials, damping and gravity; return it.
 
-    Other engines stay in their order, before it or, where they stood behind NewtonIntegrator, behind it.
+    Other engines keep their order: they stand before it, or after it if they stood after NewtonIntegrator.
     `dimensions` is 2 for disks in a plane z = const and 3 for spheres in space. By default the scene says: 3 if some
     sphere or clump may leave the plane (its blockedDOFs lack one of z, X, Y) and something takes bodies out of it,
-    which is centres at different z, a motion along z or a turn about x or y, or gravity along z; else 2. Say 3 where a
-    drive or a force will lift a body out of a plane in which all lie.
-    `periods` are the lengths after which the box repeats, (x, y) for disks, (x, y, z) for spheres, 0 where it does not; by
-    default those of O.cell. A cell that is long on purpose runs faster with 0 there. Other `settings` (precision, threads,
+    which means centres at different z, a motion along z, a rotation about x or y, or gravity along z; else 2. Give 3 if a
+    drive or a force will move a body out of the plane in which all bodies lie.
+    `periods` are the periods of the box, (x, y) for disks, (x, y, z) for spheres, 0 along axes that are not periodic; by
+    default those of O.cell. If a cell is long only to avoid images, 0 is faster. Other `settings` (precision, threads,
     syncEvery, ...) go to GrainLoop. Present contacts keep their tangential springs. Labels of YADE's four engines and of
     their functors then refuse to be read or set (`stand_ins`).
 
-    Contacts of a step see driven and frozen bodies with the velocities of the step before, and free disks as engines before
-    GrainLoop (TranslationEngine, a PyRunner) have left them. On YADE's loop it depends on whether the engine stands before
-    or behind InteractionLoop; the difference is a delay of one step. A contact of a frozen disk that is set in motion takes
-    the reduced mass of the pair anew, and YADE's keeps that of before.
+    Contacts of a step use the velocities of driven and frozen bodies from the previous step, and those of free disks as changed
+    by engines before GrainLoop (TranslationEngine, a PyRunner). On YADE's loop this depends on whether the engine stands before
+    or after InteractionLoop; the difference is a delay of one step. If a frozen disk is set in motion, GrainLoop computes the
+    reduced mass of its contacts again, while YADE keeps the old one.
 
-    Raises UsageError for what GrainLoop does not do (`take_over.RULES`, of spheres also `take_over_spheres.RULES`,
+    Raises UsageError for features that GrainLoop lacks (`take_over.RULES`, for spheres also `take_over_spheres.RULES`,
     `loop_laws`), ValueError for bodies and cells that it cannot move, RuntimeError for engines that it does not know;
-    O.engines then stays as it was.
+    O.engines is then unchanged.
     """
     from yade import O
 
@@ -105,10 +105,10 @@ def exchange_of(made):
 
 
 def use_yade_loop():
-    """Put YADE's own engines back in place of the GrainLoop that `use_grain_loop` made; all bodies are brought up to date.
+    """Put YADE's own engines back in place of the GrainLoop that `use_grain_loop` made; update all bodies.
 
-    Contacts are found anew and get the tangential springs that they have now; gravity, friction and constants of the law
-    go along if they were changed.
+    Contacts are searched again and keep their present tangential springs; changes of gravity, friction and constants of the
+    law are transferred.
     """
     from yade import O
 
@@ -116,7 +116,7 @@ def use_yade_loop():
     tag = exchange_of(loop)
     if loop.walls or loop.loads:
         raise UsageError(
-            "YADE's loop has no flat walls and loads of GrainLoop's; remove them (removeWall, setLoad) first"
+            "YADE's loop does not have GrainLoop's flat walls and loads; remove them (removeWall, setLoad) first"
         )
     loop.sync()
     before = exchanged[tag].loop
@@ -125,7 +125,7 @@ def use_yade_loop():
     if O.periodic:
         before.newton.prevVelGrad = (
             O.cell.velGrad
-        )  # bodies have followed it: no change that NewtonIntegrator must make up for
+        )  # bodies have followed it already, so NewtonIntegrator must not apply the change again
     O.engines = before.put_back(O.engines)
     make_contacts_anew(before, loop)
 
@@ -133,14 +133,14 @@ def use_yade_loop():
 def hand_settings_back(loop, before):
     """Give YADE's engines gravity, damping and the law's constants as GrainLoop has them now.
 
-    UsageError where they belong to materials and YADE's own laws: those are the user's to change.
+    UsageError if they belong to materials and YADE's own laws, which the user must change.
     """
     law2, ip2 = before.contacts.lawDispatcher.functors[0], before.contacts.physDispatcher.functors[0]
     if type(law2).__name__ not in loop_laws.our_laws():
         for key, value in loop_laws.law_settings(before.contacts).items():
             if getattr(loop, key) != value:
                 raise UsageError(
-                    f"GrainLoop.{key} is {getattr(loop, key)}, and {value} in the scene's materials and functors;"
+                    f"GrainLoop.{key} is {getattr(loop, key)}, but {value} in the scene's materials and functors;"
                     " make them equal before going back"
                 )
     before.newton.gravity, before.newton.damping, before.newton.dampGravity = (
@@ -156,12 +156,12 @@ def hand_settings_back(loop, before):
 
 
 def make_contacts_anew(loop, of):
-    """Have YADE find all contacts of the present positions, in a step that takes no time, with the springs of a GrainLoop."""
+    """Make YADE find all contacts at the present positions, in a step with dt = 0, and give them a GrainLoop's springs."""
     from yade import O
 
     engines_of_scene, dt, clock = O.engines, O.dt, (O.iter, O.time)
     O.interactions.clear()
-    loop.collider()  # at once: in a step it may wait until something has moved
+    loop.collider()  # called directly, because within a step it may wait until bodies have moved
     O.engines, O.dt = list(loop), 0
     O.run(1, True)  # in the loop's own thread: forces of engines that are called by hand are not cleared
     O.engines, O.dt = engines_of_scene, dt

@@ -1,7 +1,7 @@
-"""YADE's helpers that read interactions or contact forces: under GrainLoop, which keeps neither, they answer truly or refuse.
+"""Replaces YADE's helpers that read interactions or contact forces: under GrainLoop they compute the right answer or refuse.
 
-Without this they would give 0 or nan in silence. On YADE's own loop, and in scenes without a living GrainLoop, YADE's own
-functions answer.
+GrainLoop keeps neither interactions nor their forces, so without this the helpers would return 0 or nan without a warning. On
+YADE's own loop, and in scenes without an active GrainLoop, YADE's own functions are called.
 """
 
 import functools
@@ -60,12 +60,12 @@ def refuse(name):
 
 
 def refusing(name, *_args, **_keys):
-    """What stands for a function that cannot answer."""
+    """Replaces a function that cannot work under GrainLoop."""
     refuse(name)
 
 
 def avg_num_interactions(cutoff=0.0, skipFree=False, considerClumps=False):
-    """Return 2 C/N as YADE's avgNumInteractions: contacts at the present positions over the length of O.bodies."""
+    """Return 2 C/N like YADE's avgNumInteractions: contacts at the present positions over the length of O.bodies."""
     from yade import O
 
     if cutoff or skipFree or considerClumps:
@@ -74,10 +74,10 @@ def avg_num_interactions(cutoff=0.0, skipFree=False, considerClumps=False):
 
 
 def unbalanced_force(useMaxForce=False):
-    """Return the mean (or largest) |force + m g| on what can move over the mean |force| of contacts, at the present positions.
+    """Return the mean (or largest) |force + m g| on movable bodies over the mean |force| of contacts, at present positions.
 
-    As YADE's unbalancedForce: a clump counts once, with the forces on its members. YADE's number behind the integrator and
-    between runs is that of the positions before the step.
+    Like in YADE's unbalancedForce, a clump counts once, with the forces on its members. After the integrator and between
+    runs, YADE's number belongs to the positions before the step.
     """
     from yade import O
 
@@ -96,7 +96,7 @@ def unbalanced_force(useMaxForce=False):
 
 
 def net_forces(force):
-    """Return the forces and weights on all that can move, from forces by id, both of shape (n, 3); members go to their clump."""
+    """Return forces and weights of all movable bodies, (n, 3) each, from forces by id; those of members go to their clump."""
     from yade import O
 
     bodies = [b for b in O.bodies if b is not None]
@@ -109,9 +109,9 @@ def net_forces(force):
 
 
 def outside_forces():
-    """Return the forces from outside by id [N], shape (n, 3): those in O.forces, and GrainLoop's loads.
+    """Return the external forces by id [N], shape (n, 3): those in O.forces, and GrainLoop's loads.
 
-    RuntimeError where an engine adds forces at each step and they are gone by now: GrainLoop empties O.forces in its step.
+    RuntimeError if an engine adds forces at each step and they are no longer there: GrainLoop empties O.forces in its step.
     """
     from yade import O
 
@@ -129,7 +129,7 @@ def outside_forces():
 
 
 def permanent_forces(ids):
-    """Return what O.forces.setPermF gave, shape (n, 3); YADE crashes if asked where nobody gave any."""
+    """Return the forces set by O.forces.setPermF, shape (n, 3); YADE crashes if there are none, so this is checked first."""
     from yade import O
 
     used = O.forces.getPermForceUsed()
@@ -153,7 +153,7 @@ def instead(original, answer):
 
 
 def install():
-    """Put these functions wherever a loaded module holds YADE's own under its name; once."""
+    """Replace YADE's functions in all loaded modules that hold them; once."""
     install_methods()
     answers = {name: (module, functools.partial(refusing, name)) for module in REFUSED for name in REFUSED[module]}
     for name, (module, answer) in {**answers, **ANSWERED}.items():
@@ -166,7 +166,7 @@ def install():
 
 
 def install_methods():
-    """Let exporters of interactions, and post2d.data(intr=True), refuse too; once."""
+    """Make exporters of interactions, and post2d.data(intr=True), refuse too; once."""
     from yade import export, post2d, utils  # noqa: F401
 
     for name in EXPORTS:

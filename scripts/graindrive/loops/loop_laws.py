@@ -1,4 +1,4 @@
-"""What GrainLoop is told of the contact law, the materials and the damping of a scene that was written for YADE's loop."""
+"""Translates the contact law, the materials and the damping of a scene for YADE's loop into GrainLoop's settings."""
 
 import functools
 import math
@@ -7,7 +7,7 @@ from ..base.errors import UsageError
 from ..lazily import engines
 
 OUR_IP2 = "Ip2_FrictMat_FrictMat_ContactPhys"
-# Law2_ -> its Ip2_, GrainLoop.law, and what must stay as it is by default because GrainLoop does not have it
+# Law2_ -> its Ip2_, GrainLoop.law, and attributes that must keep their defaults because GrainLoop does not have them
 YADE_LAWS = {
     "Law2_ScGeom_FrictPhys_CundallStrack": (
         "Ip2_FrictMat_FrictMat_FrictPhys",
@@ -26,7 +26,7 @@ YADE_LAWS = {
 
 @functools.lru_cache(maxsize=None)
 def our_laws():
-    """Return {Law2_ of our own: GrainLoop.law}."""
+    """Return {our own Law2_: GrainLoop.law}."""
     return engines.law_functors()
 
 
@@ -40,7 +40,7 @@ def our_attributes():
 def law_settings(contacts):
     """Return GrainLoop's arguments for the law, the friction and the materials of an InteractionLoop.
 
-    UsageError names the functor and the attribute, or two bodies, where GrainLoop would compute something else.
+    If GrainLoop would compute something different, UsageError names the functor and the attribute, or two bodies.
     """
     law = only(contacts.lawDispatcher.functors, "Law2_")
     ip2 = only(contacts.physDispatcher.functors, "Ip2_")
@@ -53,7 +53,7 @@ def law_settings(contacts):
 
 
 def only(functors, kind):
-    """Return the one functor of a dispatcher; UsageError where there are several or none."""
+    """Return the only functor of a dispatcher; UsageError if there are several or none."""
     if len(functors) == 1:
         return functors[0]
     found = ", ".join(type(f).__name__ for f in functors) or "none"
@@ -67,13 +67,13 @@ def require_ip2(ip2, expected, law):
 
 
 def require_defaults(functor, allowed):
-    """Refuse attributes that GrainLoop does not have, by the functor's and the attribute's name."""
+    """Refuse changed attributes that GrainLoop does not have; the error names functor and attribute."""
     for key, value in allowed.items():
         got = getattr(functor, key)
         if got != value:
             raise UsageError(
                 f"GrainLoop has no {type(functor).__name__}.{key}: it must be {value}, got {got};"
-                " stay on YADE's loop, or leave it out"
+                " use YADE's loop, or leave it out"
             )
 
 
@@ -88,9 +88,9 @@ def our_law(law, ip2):
 
 
 def yade_law(law, ip2, geometries):
-    """Return the arguments for one of YADE's own laws, with the constants of the one material that the bodies share.
+    """Return the arguments for one of YADE's own laws, with the constants of the single material of all bodies.
 
-    Of the Ig2_ functors that of two spheres counts: GrainLoop refuses bodies of other shapes anyway.
+    Only the Ig2_ functor of two spheres matters, because GrainLoop refuses bodies of other shapes.
     """
     expected, name, of_law, of_ip2 = YADE_LAWS[type(law).__name__]
     require_ip2(ip2, expected, law)
@@ -107,7 +107,7 @@ def yade_law(law, ip2, geometries):
 
 
 def matched(ip2, key, value=None):
-    """Return what a MatchMaker of an Ip2_ functor gives for two bodies of one material with that value; `value` without one."""
+    """Return the value of an Ip2_ functor's MatchMaker for two bodies with the same `value`; without MatchMaker, `value`."""
     matcher = getattr(ip2, key)
     if matcher is None:
         return value
@@ -155,7 +155,7 @@ def ratio_of_restitution(restitution):
 
 
 def common_material(*properties):
-    """Return a material that every body of the scene agrees with in these properties; UsageError naming two that do not."""
+    """Return a material whose properties of these names all bodies share; UsageError names two bodies that differ."""
     from yade import O
 
     first = None
@@ -171,14 +171,16 @@ def common_material(*properties):
                     f" that of body {first.id} is {there:g}; make them equal"
                 )
     if first is None:
-        raise UsageError("GrainLoop takes friction and stiffness from the bodies' materials; O.bodies has none")
+        raise UsageError(
+            "GrainLoop takes friction and stiffness from the bodies' materials, but O.bodies holds no material"
+        )
     return first.mat
 
 
 def damping_settings(newton):
     """Return GrainLoop's arguments for the damping of a NewtonIntegrator.
 
-    UsageError where YADE would damp one body otherwise than the rest: State.isDamped=False, or a clump that may turn about
+    UsageError if YADE would damp one body differently from the others: State.isDamped=False, or a clump that may rotate about
     x or y, whose torque YADE damps by another rule.
     """
     from yade import O

@@ -1,14 +1,14 @@
-"""What a run is to the run folder, the progress line, checkpoints and campaigns: something that marches on in steps."""
+"""The protocol `March`: the interface of a time loop for the run folder, the progress line, checkpoints and campaigns."""
 
 from typing import Protocol
 
 
 class March(Protocol):
-    """Anything that goes on in equal steps and can be saved and loaded: YADE's loop, a continuum solver, an oscillator.
+    """Anything that advances in equal steps and can be saved and loaded: YADE's loop, a continuum solver, an oscillator.
 
-    After `load` of what `save` wrote, the march must go on with the same bits as if it had never stopped; then resumed
-    runs equal runs in one go. `size` is how much work one step is, in `unit` less its "-steps": grains for
-    "particle-steps", cells for "cell-steps". A march whose size is 0 counts steps alone.
+    After `load` the march must continue with the same bits as if it had never stopped; then a resumed run equals an
+    uninterrupted one. `size` is the work of one step, in `unit` without its "-steps": grains for
+    "particle-steps", cells for "cell-steps". For a march of size 0, steps are counted.
     """
 
     unit: str
@@ -16,13 +16,13 @@ class March(Protocol):
 
     @property
     def time(self):
-        """Model time now, in the study's unit."""
+        """Present model time, in the study's unit."""
 
     def advance(self, steps):
-        """Go on by so many steps; raises what stops it."""
+        """Advance by `steps` steps; raises the error that stops it."""
 
     def save(self, folder):
-        """Write into an empty folder (a Path) all that is needed to go on."""
+        """Write all data that are needed to continue into an empty folder (a Path)."""
 
     def load(self, folder):
-        """Take up what `save` wrote; RuntimeError with the reason where that cannot be."""
+        """Load what `save` wrote; RuntimeError with the reason if this is impossible."""

@@ -1,6 +1,6 @@
-"""After O.pause() the bodies are true, as on YADE's loop.
+"""Makes O.pause() leave all bodies up to date, as on YADE's loop.
 
-GrainLoop writes all bodies in the last step of a run, but a pause from outside may come when that step has looked already.
+GrainLoop writes all bodies in the last step of a run, but it may notice a pause from another thread too late for that.
 """
 
 from yade.wrapper import Omega
@@ -9,7 +9,7 @@ pause_of_yade = Omega.pause
 
 
 def pause(omega):
-    """Stop the run after the present step, and have GrainLoop write all bodies."""
+    """Stop the run after the present step, and make GrainLoop write all bodies."""
     pause_of_yade(omega)
     for engine in omega.engines:
         if type(engine).__name__ == "GrainLoop":
@@ -20,5 +20,5 @@ pause.__doc__ = f"{pause_of_yade.__doc__}\n\n{pause.__doc__}"
 
 
 def watch():
-    """Put `pause` in the place of O.pause; a second call changes nothing."""
+    """Replace O.pause by `pause`; a second call changes nothing."""
     Omega.pause = pause

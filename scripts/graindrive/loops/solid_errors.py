@@ -1,7 +1,7 @@
-"""Errors of solids on YADE's own loop, raised by O.run, O.step and O.wait.
+"""Makes O.run, O.step and O.wait raise the errors of solids on YADE's own loop.
 
-YADE calls functors in parallel loops, where an exception would end the process. What can be checked is checked before
-the run; what a functor finds stops the run, and is raised here.
+YADE calls functors in parallel loops, where an exception would end the process. So rules are checked before the run if
+possible; an error that a functor finds stops the run, and is raised here.
 """
 
 import functools
@@ -15,7 +15,7 @@ LARGEST_SKIN = 0.9  # smallest radii
 
 
 def raise_complaint():
-    """Raise RuntimeError with what a functor complained of, if it did."""
+    """Raise RuntimeError with the message of a functor, if there is one."""
     complaint = take_complaint()
     if complaint:
         raise RuntimeError(complaint)
@@ -37,7 +37,7 @@ def check(omega):
 
 
 def check_skin(omega, skin):
-    """Raise ValueError if the collider widens boxes so far that those of endless solids would close (see Bo1_Solid_Aabb)."""
+    """Raise ValueError if the collider enlarges the boxes of endless solids beyond two periods (see Bo1_Solid_Aabb)."""
     radii = [body.shape.radius for body in omega.bodies if type(body.shape).__name__ == "Sphere"]
     smallest = min(radii, default=0)
     most = LARGEST_SKIN * smallest
@@ -49,7 +49,7 @@ def check_skin(omega, skin):
 
 
 def checked(of_yade, starts):
-    """Return a method of O that raises complaints behind YADE's own, and for one that starts a run checks the scene before."""
+    """Wrap a method of O: raise functors' errors after the call; if it `starts` a run, check the scene before it."""
 
     @functools.wraps(of_yade)
     def method(omega, *args, **keys):
@@ -64,7 +64,7 @@ def checked(of_yade, starts):
 
 
 def watch():
-    """Put the checked methods in the place of O.run, O.step and O.wait; a second call changes nothing."""
+    """Replace O.run, O.step and O.wait by checked methods; a second call changes nothing."""
     if hasattr(Omega.run, "__wrapped__"):
         return
     Omega.run, Omega.step = checked(Omega.run, True), checked(Omega.step, True)

@@ -1,13 +1,13 @@
-"""What stands under the labels of engines that GrainLoop replaced: to read or set them says so, in place of doing nothing.
+"""Objects under the labels of engines that GrainLoop replaced: reading or setting their attributes raises an error.
 
-YADE makes each label a name of Python's builtins. `newton.gravity = …` would go to an engine that no longer acts.
+YADE makes each label a name in Python's builtins. Without this, `newton.gravity = …` would set an engine that is not used.
 """
 
 import builtins
 
 from ..base.errors import UsageError
 
-NEAREST = {  # attribute of YADE's engines and functors -> that of GrainLoop, where names differ
+NEAREST = {  # attribute of YADE's engines and functors -> attribute of GrainLoop with another name
     "verletDist": "skin",
     "betan": "normalDampingRatio",
     "betas": "tangentialDampingRatio",
@@ -16,7 +16,7 @@ NEAREST = {  # attribute of YADE's engines and functors -> that of GrainLoop, wh
 
 
 class StandIn:
-    """A name that answers everything with the way out; `label` and `name` are those of the engine that is gone."""
+    """An object that refuses every use and names the alternative; `label` and `name` are those of the replaced engine."""
 
     def __init__(self, label, name):
         object.__setattr__(self, "_is", (label, name))
@@ -26,7 +26,7 @@ class StandIn:
         return f"<{label}: {name}, which GrainLoop replaced>"
 
     def __getattribute__(self, key):
-        if key.startswith("_"):  # Python's own questions, such as for a class or a documentation
+        if key.startswith("_"):  # attributes that Python itself reads, such as the class
             return object.__getattribute__(self, key)
         raise refusal(self, key, "read")
 
@@ -38,13 +38,13 @@ class StandIn:
 
 
 def refusal(stand_in, key, verb):
-    """Return the UsageError that names the label, the engine and the attribute of GrainLoop to take in its place."""
+    """Return the UsageError that names the label, the engine and the attribute of GrainLoop to use instead."""
     label, name = object.__getattribute__(stand_in, "_is")
     return UsageError(f"{label} is {name}, which GrainLoop replaced: {way_out(key, verb)}")
 
 
 def way_out(key, verb):
-    """Return in words what to do in place of reading or assigning an attribute."""
+    """Return advice on what to do instead of reading or assigning an attribute."""
     from yade.wrapper import Engine
 
     from ..engines import GrainLoop
@@ -56,7 +56,7 @@ def way_out(key, verb):
 
 
 def put(loop):
-    """Let the labels of a `take_over.Loop` and of its functors stand for what is gone; O.engines = … gives them back."""
+    """Put stand-ins under the labels of a `take_over.Loop` and of its functors; O.engines = … restores the labels."""
     for label, engine in labelled(loop).items():
         if getattr(builtins, label, None) == engine:
             setattr(builtins, label, StandIn(label, type(engine).__name__))

@@ -1,6 +1,6 @@
-"""What YADE's own engines can carry and GrainLoop cannot: one list, asked before a scene is taken over.
+"""Lists features of YADE's engines that GrainLoop lacks; the rules are checked before GrainLoop takes a scene over.
 
-Bodies, cell and the other engines are looked at by GrainLoop itself (`GrainLoop.requireScene`), whoever made it.
+GrainLoop itself checks bodies, cell and the other engines (`GrainLoop.requireScene`).
 """
 
 import sys
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ..base.errors import UsageError
 
 REPLACED = ("ForceResetter", "InsertionSortCollider", "InteractionLoop", "NewtonIntegrator")
-ADD_FORCES = (  # YADE's engines that act by the forces which they add, as engines/seam/onlookers.cpp knows them
+ADD_FORCES = (  # YADE's engines that act by adding forces, as listed in engines/seam/onlookers.cpp
     "AxialGravityEngine",
     "CentralConstantAccelerationEngine",
     "DragEngine",
@@ -35,7 +35,7 @@ DRIVES_AND_MEASURES = (
 
 @dataclass(frozen=True)
 class Loop:
-    """YADE's four engines as they stand in O.engines, and all engines in their order."""
+    """YADE's four engines of O.engines, and all engines in their order."""
 
     resetter: object
     collider: object
@@ -47,20 +47,20 @@ class Loop:
         return iter((self.resetter, self.collider, self.contacts, self.newton))
 
     def place(self, engine):
-        """Return where an engine of the four stands in the order, from 0."""
+        """Return the position of one of the four engines in the order, from 0."""
         return self.order.index(engine)
 
     def with_grain_loop(self, made):
-        """Return the engines with a GrainLoop in NewtonIntegrator's place: what stands behind that stands behind it."""
+        """Return the engines with a GrainLoop in NewtonIntegrator's place; engines after NewtonIntegrator stay after it."""
         kept = [e for e in self.order if type(e).__name__ not in REPLACED or e == self.newton]
         return [made if e == self.newton else e for e in kept]
 
     def put_back(self, engines):
         """Return O.engines with the four again in place of its GrainLoop.
 
-        In the order of before if the others are the same; else those before GrainLoop stand between contacts and
-        integrator, those behind it behind the integrator. Others are known by class and label, for a scene that was
-        saved and loaded holds them anew.
+        The order is the original one if the other engines are the same; else engines before GrainLoop stand between contacts
+        and integrator, engines after it after the integrator. Other engines are identified by class and label, because a
+        scene that was saved and loaded holds new objects.
         """
         names = [e if isinstance(e, str) else (type(e).__name__, e.label) for e in self.with_grain_loop("GrainLoop")]
         now = ["GrainLoop" if type(e).__name__ == "GrainLoop" else (type(e).__name__, e.label) for e in engines]
@@ -73,20 +73,20 @@ class Loop:
 
 @dataclass(frozen=True)
 class Rule:
-    """One thing that YADE heeds and GrainLoop does not: `obstacle(loop)` says in words what stands in the way, or ""."""
+    """A feature of YADE that GrainLoop lacks: `obstacle(loop)` returns a message if the scene uses it, else ""."""
 
     name: str
     obstacle: Callable
 
 
 def dead(loop):
-    """A dead engine does not act: disks would not meet, or would not move."""
+    """A dead engine does not act: disks would have no contacts, or would not move."""
     names = [type(e).__name__ for e in loop if e.dead]
     return f"{names[0]}.dead is True, so YADE's loop goes without it; set it to False" if names else ""
 
 
 def newton_mask(loop):
-    """NewtonIntegrator moves the bodies with a bit of its mask."""
+    """NewtonIntegrator moves only bodies that share a bit with its mask."""
     mask, (outside, groups) = loop.newton.mask, first_body(
         lambda b: loop.newton.mask > 0 and not b.groupMask & loop.newton.mask
     )
@@ -94,7 +94,7 @@ def newton_mask(loop):
 
 
 def self_interaction(loop):
-    """Bodies that share a bit of avoidSelfInteractionMask do not meet."""
+    """Bodies that share a bit of avoidSelfInteractionMask have no contacts with each other."""
     mask = loop.collider.avoidSelfInteractionMask
     first, groups = first_body(lambda b: not b.isClump and b.groupMask & mask)
     return (
@@ -109,14 +109,14 @@ def distant_contacts(loop):
 
 
 def geometry(loop):
-    """Contacts of disks are those of Ig2_Sphere_Sphere_ScGeom."""
+    """Ig2_Sphere_Sphere_ScGeom must compute the contacts of disks."""
     names = [type(f).__name__ for f in loop.contacts.geomDispatcher.functors]
     known = "Ig2_Sphere_Sphere_ScGeom"
     return "" if known in names else f"InteractionLoop needs {known}, it has {', '.join(names) or 'no Ig2_ functor'}"
 
 
 def one_functor_each(loop):
-    """Which of several functors acts depends on the pair of materials."""
+    """With several functors, the pair of materials decides which one acts."""
     for kind, dispatcher in (("Ip2_", loop.contacts.physDispatcher), ("Law2_", loop.contacts.lawDispatcher)):
         names = [type(f).__name__ for f in dispatcher.functors]
         if len(names) != 1:
@@ -148,7 +148,7 @@ def recorded_contacts(_loop):
 
 
 def order_of_the_four(loop):
-    """In another order forces wait for the next step: GrainLoop finds contacts and moves disks in one."""
+    """GrainLoop finds contacts and moves disks in one step; in another order of the engines forces act a step later."""
     resetter, collider, contacts, newton = (loop.place(engine) for engine in loop)
     if max(resetter, collider) < contacts < newton:
         return ""
@@ -157,7 +157,7 @@ def order_of_the_four(loop):
 
 
 def forces_that_are_erased(loop):
-    """ForceResetter erases what is added before it, or behind the integrator: on YADE's loop that does nothing."""
+    """ForceResetter erases forces added before it or after the integrator, so on YADE's loop they have no effect."""
     first, last = loop.place(loop.resetter), loop.place(loop.newton)
     for at, engine in enumerate(loop.order):
         name = type(engine).__name__
@@ -171,7 +171,7 @@ def forces_that_are_erased(loop):
 
 
 def misplaced_drives_and_measures(loop):
-    """Elsewhere they would see contacts of another step, or impose the velocity of a step that is over."""
+    """Elsewhere they would see contacts of another step, or impose a velocity too late."""
     first, last = loop.place(loop.contacts), loop.place(loop.newton)
     for at, engine in enumerate(loop.order):
         name = type(engine).__name__
@@ -201,14 +201,14 @@ RULES = [
 
 
 def first_body(wanted):
-    """Return (id, mask) of the first body for which `wanted(body)` holds, as words; ("", "") if there is none."""
+    """Return (id, mask) of the first body for which `wanted(body)` is true, as text; ("", "") if there is none."""
     from yade import O
 
     return next(((str(b.id), str(b.groupMask)) for b in O.bodies if wanted(b)), ("", ""))
 
 
 def yades_loop():
-    """Return the `Loop` that stands in O.engines; UsageError unless each of its engines is there once."""
+    """Return the `Loop` in O.engines; UsageError unless each of its engines is there exactly once."""
     from yade import O
 
     if any(type(engine).__name__ == "GrainLoop" for engine in O.engines):
@@ -224,20 +224,20 @@ def yades_loop():
 
 
 def require(loop, rules=tuple(RULES)):
-    """Raise UsageError with the first obstacle that one of the rules finds, in words."""
+    """Raise UsageError with the message of the first rule that finds an obstacle."""
     for rule in rules:
         obstacle = rule.obstacle(loop)
         if obstacle:
-            raise UsageError(f"GrainLoop cannot take this scene over: {obstacle}, or stay on YADE's loop")
+            raise UsageError(f"GrainLoop cannot take this scene over: {obstacle}, or use YADE's loop")
 
 
 def warn_of_runners():
-    """Say once at take-over, where a PyRunner may look, what it will not find."""
+    """Warn at take-over if there is a PyRunner, which may read data that GrainLoop does not keep."""
     from yade import O
 
     if any(type(engine).__name__ == "PyRunner" for engine in O.engines):
         print(
-            "graindrive: a PyRunner stands in O.engines: O.interactions stays empty under GrainLoop, contacts are in"
-            " loop.contacts(), and O.forces holds forces from outside alone",
+            "graindrive: O.engines holds a PyRunner: under GrainLoop O.interactions is empty, contacts are in"
+            " loop.contacts(), and O.forces holds only external forces",
             file=sys.stderr,
         )

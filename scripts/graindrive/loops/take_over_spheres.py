@@ -1,11 +1,11 @@
-"""What YADE's loop can do with spheres and GrainLoop cannot: rules beside those of `take_over`, for scenes in space."""
+"""Further rules for scenes of spheres, beside those of `take_over`: features of YADE's loop that GrainLoop lacks."""
 
 from .loop_laws import YADE_LAWS, our_laws
 from .take_over import Rule
 
 
 def yades_own_law(loop):
-    """GrainLoop has YADE's own laws for disks alone."""
+    """GrainLoop has YADE's own laws only for disks."""
     name = type(loop.contacts.lawDispatcher.functors[0]).__name__
     if name not in YADE_LAWS:
         return ""
@@ -13,7 +13,7 @@ def yades_own_law(loop):
 
 
 def damped(loop):
-    """GrainLoop has Cundall's damping for disks alone."""
+    """GrainLoop has Cundall's damping only for disks."""
     damping = loop.newton.damping
     return f"NewtonIntegrator.damping={damping:g}, and it damps disks only; set it to 0" if damping else ""
 

@@ -1,1 +1,1 @@
-"""One scene with numbers of different length."""
+"""Runs one scene with several number types."""

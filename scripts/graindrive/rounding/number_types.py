@@ -1,4 +1,4 @@
-"""Runs one scene of elastic disks with numbers of different length: in YADE's builds, each a process, and on GrainLoop."""
+"""Runs one scene of elastic disks with several number types: in YADE's builds, each in its own process, and on GrainLoop."""
 
 import glob
 import json
@@ -29,7 +29,7 @@ class NumberType:
     words: str
 
 
-# The longest first: it is the truth of the others. GrainLoop's single is 24 bits in its contacts alone.
+# The longest type comes first and is the reference for the others. GrainLoop's single precision has 24 bits only in contacts.
 TYPES = {
     "mpfr150": NumberType("mpfr150", "yade", 500, "yade-mpfr150, 150 digits"),
     "float128": NumberType("float128", "yade", 113, "yade-float128, 113 bits"),
@@ -53,7 +53,7 @@ def modules_of(build):
 
 @dataclass(frozen=True)
 class Rows:
-    """Samples of a run: `steps` (n,), `place` (n, 2m) as texts of decimal digits, `velocity` (n, 2m), half a step behind."""
+    """Samples of a run: `steps` (n,), `place` (n, 2m) as decimal texts, `velocity` (n, 2m), half a step earlier."""
 
     steps: np.ndarray
     place: list
@@ -71,11 +71,11 @@ class Rows:
 
 
 def run(name, scene, rows_file):
-    """Run a scene (the dict that rounding_script.py reads, without its loop) with the numbers `name`; write `rows_file`.
+    """Run a scene (the dict that rounding_script.py reads, without its loop) with the number type `name`; write `rows_file`.
 
-    The program runs in a folder of its own, without YADE's console and ports. It is killed if anything interrupts this call, and
-    ends by itself at its next sample if this process was killed.
-    Raises UsageError if it is missing, EngineError with its last words if it fails.
+    The program runs in a separate folder, without YADE's console and ports. It is killed if this call is interrupted, and it
+    ends at its next sample if this process was killed. Raises UsageError if it is missing, EngineError with its last line of
+    output if it fails.
     """
     kind = TYPES[name]
     with tempfile.TemporaryDirectory(prefix="graindrive-rounding-") as folder:
@@ -123,7 +123,7 @@ def read(rows_file):
     found = []
     with open(rows_file) as lines:
         for line in lines:
-            if line.startswith('{"steps"'):  # YADE itself says a word too
+            if line.startswith('{"steps"'):  # YADE prints lines of its own too
                 found.append(json.loads(line))
     steps = np.array([row["steps"] for row in found])
     return Rows(steps, [row["place"] for row in found], np.array([row["velocity"] for row in found]))

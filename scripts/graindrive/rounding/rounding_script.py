@@ -1,8 +1,8 @@
-"""A scene of elastic disks in one build of YADE, whatever its number type; reads scene.json, prints one line a sample.
+"""A scene of elastic disks in one build of YADE with any number type; reads scene.json, prints one line per sample.
 
-Plain YADE: it is copied into a folder of its own and run there (`number_types.run`), for the builds with long numbers cannot load
-Graindrive's engines. In yade-double the scene's `loop`, "double" or "single", asks for GrainLoop in that precision.
-All numbers of the scene must reach YADE to the last bit; one that does not ends the script.
+This is a plain YADE script. It is copied into a separate folder and run there (`number_types.run`), because the builds with long
+numbers cannot load Graindrive's engines. In yade-double the scene's `loop`, "double" or "single", selects GrainLoop in that
+precision. YADE must hold all numbers of the scene to the last bit; otherwise the script ends.
 """
 
 import decimal
@@ -41,14 +41,14 @@ TYPE = float if isinstance(O.dt, float) else mpmath.mpf  # the builds with long 
 
 
 def given(number):
-    """Return a double, or a list of them, as what YADE takes to the last bit."""
+    """Return a double, or a list of doubles, in the form that YADE stores to the last bit."""
     return [TYPE(n) for n in number] if isinstance(number, list) else TYPE(number)
 
 
 def same(got, asked):
     """End the script unless YADE holds the number that it was given."""
     if mpmath.mpf(got) != mpmath.mpf(asked):
-        raise SystemExit(f"YADE holds {got} where {asked!r} was given")
+        raise SystemExit(f"YADE holds {got}, but {asked!r} was given")
 
 
 def build():
@@ -74,7 +74,7 @@ def build():
 
 
 def disk(x, y, vx, vy, frozen):
-    """Add a disk that does not turn: without friction nothing would turn it."""
+    """Add a disk that does not rotate: without friction there is no torque."""
     body = utils.sphere((0, 0, 0), 0.5, color=(1, 1, 1))
     state = body.state
     state.mass, state.inertia = 1, Vector3(1, 1, 1) / 8
@@ -88,13 +88,13 @@ def disk(x, y, vx, vy, frozen):
 
 
 def exact(number):
-    """Return a number of YADE's in decimal digits, with all that its type holds."""
+    """Return a number of YADE in decimal digits, with the full precision of its type."""
     return str(decimal.Decimal(number)) if isinstance(number, float) else mpmath.nstr(number, mpmath.mp.dps)
 
 
 def sample():
-    """Print steps, places and velocities of the moving disks, to the last digit at first, then as doubles."""
-    if os.getppid() != PARENT:  # whoever wanted the rows was killed
+    """Print steps, positions and velocities of the moving disks, first in full precision, later as doubles."""
+    if os.getppid() != PARENT:  # the process that started this one was killed
         shutil.rmtree(FOLDER, ignore_errors=True)
         os._exit(1)
     steps, states = O.iter + 1, [O.bodies[i].state for i in MOVING]
@@ -114,4 +114,4 @@ complete = O.iter == SCENE["steps"]
 print(json.dumps(dict(complete=complete)), flush=True)
 shutil.rmtree(FOLDER, ignore_errors=True)
 sys.stdout.flush()
-os._exit(0 if complete else 1)  # YADE's end is slow, and of some builds noisy
+os._exit(0 if complete else 1)  # YADE's own exit is slow, and some builds print messages

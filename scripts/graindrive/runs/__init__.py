@@ -1,1 +1,1 @@
-"""Run folders: what a run records, keeps, resumes and says while it grows."""
+"""Run folders: how a run records and keeps its data, resumes, and reports its progress."""

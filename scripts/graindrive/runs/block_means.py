@@ -1,4 +1,4 @@
-"""Means of the forces on a body among disks over a block of steps, out of its `ContactForceBinner`."""
+"""Reads means of the forces on a body among disks over a block of steps from its `ContactForceBinner`."""
 
 from ..scenes import scene
 from ..base.errors import UsageError

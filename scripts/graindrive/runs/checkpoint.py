@@ -1,9 +1,9 @@
-"""Checkpoints: a folder with all that a run needs to go on from a step, and one checksum over it and over the data up to there.
+"""Checkpoints: a folder with all that a run needs to continue from a step, with a checksum of it and of the data so far.
 
 `checkpoint-STEP/` holds what the study saves (`scene.checkpoint`, `track.npz`) and `checkpoint.json`: the study's facts, `step`,
 `digest` of the parameters, `rows` and `series` (number and checksum of the rows of the time series), `items` (name and
 checksum of each frame), `files` (checksum of each file beside it), `format`, `code_version`, and `sum`, which covers all of
-these. It is written beside, synced and renamed, so a kill leaves the older one or the new one, or both.
+these. It is written under a temporary name, synced and renamed, so a kill leaves the older one or the new one, or both.
 """
 
 import json
@@ -19,18 +19,18 @@ from ..base.errors import is_full, one_line
 FORMAT = 2  # of checkpoint.json and of what its checksums cover
 FACTS = "checkpoint.json"
 DATA = "resumed.h5"  # in the folder of a resumed run: rows and items up to its checkpoint
-SOURCE = "resumed_from"  # attribute of a resumed run's data: the name of the remains that it goes on from
+SOURCE = "resumed_from"  # attribute of a resumed run's data: the name of the remains that it continues
 TEMPORARY = "checkpoint.tmp"
 
 
 class Damaged(Exception):
-    """Remains of a run that do not hold together; the message names the file and says what is wrong with it."""
+    """Remains of a run are damaged or inconsistent; the message names the file and says what is wrong with it."""
 
 
 def write(path, save, facts):
-    """Have `save(folder)` write a checkpoint below `path`; it replaces the older one once it is whole.
+    """Write a checkpoint below `path` with `save(folder)`; it replaces the older one once it is complete.
 
-    `facts` are plain values with `step`, `digest`, `rows`, `series` and `items`. One of the same step stays as it is.
+    `facts` are plain values with `step`, `digest`, `rows`, `series` and `items`. A checkpoint of the same step is kept.
     """
     name, older, temporary = path / f"checkpoint-{facts['step']:012d}", folders(path), path / TEMPORARY
     if name in older:
@@ -46,12 +46,12 @@ def write(path, save, facts):
 
 
 def folders(path):
-    """Return the folders of the checkpoints below `path`, the furthest last."""
+    """Return the folders of the checkpoints below `path`, the one with the most steps last."""
     return sorted(file.parent for file in Path(path).glob(f"checkpoint-*/{FACTS}"))
 
 
 def discard(folder):
-    """Remove a checkpoint; a kill in between leaves no half of one under its name."""
+    """Remove a checkpoint; a kill meanwhile leaves no incomplete checkpoint under its name."""
     whole_files.discard(folder, whole_files.beside(folder))
 
 
@@ -61,13 +61,13 @@ def file_sum(path):
 
 
 def facts_sum(facts):
-    """Return the checksum of a dict of plain values, its own `sum` left out."""
+    """Return the checksum of a dict of plain values without its key `sum`."""
     plain = {key: value for key, value in facts.items() if key != "sum"}
     return run_data.new_sum(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
 
 def read(folder):
-    """Return the facts of a checkpoint; raises Damaged unless it is whole and of this format. Its data are not looked at."""
+    """Return the facts of a checkpoint; raises Damaged unless it is complete and of this format. Its data are not checked."""
     file = folder / FACTS
     try:
         facts = json.loads(file.read_text(encoding="utf-8"))
@@ -76,7 +76,7 @@ def read(folder):
         raise Damaged(f"{file} cannot be read ({one_line(error)})") from None
     if format_ != FORMAT:
         raise Damaged(
-            f"{file} has format {one_line(format_)}, this version of Graindrive reads {FORMAT}: go on with the one that wrote it"
+            f"{file} has format {one_line(format_)}, this version of Graindrive reads {FORMAT}: use the version that wrote it"
         )
     if facts.get("sum") != facts_sum(facts):
         raise Damaged(f"{file} differs from its checksum")
@@ -96,10 +96,10 @@ def check_file(file, sum_):
 
 
 def take_over(remains, facts, name, path):
-    """Copy the checkpoint `name` of the folder `remains`, whose `facts` were read, and its data into `path`.
+    """Copy the checkpoint `name` of the folder `remains`, with the given `facts`, and its data into `path`.
 
-    The data go to `resumed.h5`: as many rows as the checkpoint says and the items that it names, each checked against its
-    checksum. Raises Damaged where they differ; `path` is then as before. The checkpoint comes last.
+    The data go to `resumed.h5`: the checkpoint's number of rows and the items that it names, each checked against its
+    checksum. Raises Damaged if one differs; `path` is then unchanged. The checkpoint is copied last.
     """
     source = remains / "run.h5"
     try:
@@ -120,13 +120,13 @@ def copy_data(source, file, facts):
     file.attrs[SOURCE] = source.parent.name
     rows = run_data.rows_in(source)
     if rows < facts["rows"]:
-        raise Damaged(f"{source} holds {max(rows, 0)} rows of the {facts['rows']} that its checkpoint goes on from")
+        raise Damaged(f"{source} holds {max(rows, 0)} of the {facts['rows']} rows that its checkpoint needs")
     series, units = run_data.read_series(source, facts["rows"])
     if run_data.series_sum(series, units) != facts["series"]:
-        raise Damaged(f"{source} holds other series than its checkpoint goes on from")
+        raise Damaged(f"{source} holds other series than its checkpoint needs")
     run_data.write_series(file.create_group("series"), series, units)
     with h5py.File(source, "r") as stored:
         for name, sum_ in facts["items"].items():
             if name not in stored or run_data.item_sum(stored[name]) != sum_:
-                raise Damaged(f"{source} holds another {name} than its checkpoint goes on from, or none")
+                raise Damaged(f"{source} holds another {name} than its checkpoint needs, or none")
             stored.copy(name, file, name)

@@ -1,16 +1,16 @@
-"""What studies of a driven body record in the same way: blocks, frames, checkpoints, and the fields around the body."""
+"""Records runs with a driven body: blocks, frames, checkpoints, and the fields around the body."""
 
 from . import fields, picture, recording
 
 
 def record(p, folder, march, steps, block, sample, *, stage, ids, due, shown, settled, advice, label, units=None):
-    """Run a scene with a driven body `steps` steps in blocks; return the rows that were tracked, arrays by name.
+    """Run a scene with a driven body for `steps` steps in blocks; return the tracked rows, arrays by name.
 
-    p: parameters with the key `fields`. sample(done, track) notes what is measured after each block, and is asked at 0 too;
-    it appends to the `recording.Track`, and a true answer ends the run. stage: facts for checkpoints, among them the id of
-    the `body`. ids: those of the grains. shown: those of what is shown as base or walls. due: steps of the frames.
-    settled(t): whether fields count from the time t on. advice: keys that may help against overlaps. units: those of the
-    fields, see `fields.write_fields`.
+    p: parameters with the key `fields`. sample(done, track) is called after each block, and at step 0 too; it appends a
+    row of measured values to the `recording.Track`, and ends the run if it returns true. stage: facts for checkpoints, among
+    them the id of the `body`. ids: ids of the grains. shown: ids of the disks shown as base or walls. due: steps of the
+    frames. settled(t): true if the fields are averaged from the time t on. advice: keys that may help against overlaps.
+    units: units of the fields, see `fields.write_fields`.
     """
     from yade import O
 

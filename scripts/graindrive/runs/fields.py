@@ -7,7 +7,7 @@ from ..postproc.quantities import DIMENSIONS
 
 
 class FieldUnits(NamedTuple):
-    """Names of the units that a study counts in, as the run folder keeps them."""
+    """Names of the units of a study, in the form in which the run folder stores them."""
 
     length: str
     velocity: str
@@ -23,7 +23,7 @@ SETTINGS = ("kernel", "spacing", "width", "cutoff", "every", "relative", "phases
 
 
 def check_spacing(spacing):
-    """Raise UsageError for bins whose edge [d] does not divide 1 d."""
+    """Raise UsageError for bins whose side [d] does not divide 1 d."""
     if abs(1 / spacing - round(1 / spacing)) > 1e-9:
         raise UsageError(f"field_spacing={spacing:g} d must divide 1 d; take 1/{max(1, round(1 / spacing))}")
 
@@ -33,8 +33,8 @@ def write_fields(folder, name, averager, units=None):
 
     Datasets: x (nx,), y (ny,), samples (phases,), area_fraction, density, temperature and pressure (phases, ny, nx),
     velocity (phases, ny, nx, 2), contact_stress and kinetic_stress (phases, ny, nx, 2, 2); pressure and stresses only
-    where the averager has them. Velocity and temperature are nan where no grain was. In three dimensions shapes are the
-    averager's, solid_fraction stands for area_fraction, and the attribute `axes` names the grid's axes: `xz` with
+    where the averager has them. Velocity and temperature are nan where no grain was. In three dimensions the shapes are those
+    of the averager, solid_fraction replaces area_fraction, and the attribute `axes` names the grid's axes: `xz` with
     averageAlong="y". `units` are SI unless given.
     """
     in_space = averager.dimensions == 3

@@ -1,9 +1,10 @@
 """Pictures of the scene for a run folder: grains, the driven body and the contacts between them at this moment.
 
-Contacts are those at the present positions, with the forces that the next step will find, under either loop; looking changes
-nothing. All places lie in one periodic image, along x for disks and along each periodic axis for spheres: grains in
-[0, period), the body whole with its centre there, a contact point next to its first side, of a solid next to the grain. A driven
-body that is a solid (`surfaces`) has no disks: only its place is told.
+Contacts belong to the present positions, and their forces are those that the next step will compute, under either loop; taking a
+picture does not change the scene. All positions lie in one periodic image, along x for disks and along each periodic axis for
+spheres: grains lie in [0, period); the body is not split, and its centre lies there; a contact point lies next to the contact's
+first side, or next to the grain if the other side is a solid. A driven body that is a solid (`surfaces`) has no disks: only its
+position is stored.
 """
 
 from typing import NamedTuple
@@ -15,15 +16,15 @@ from ..loops import grain_loop
 from ..scenes import scene
 from ..postproc.reader import INTRUDER
 
-NOT_SHOWN = -1  # row of a disk that is in none of a picture's arrays
+NOT_SHOWN = -1  # row of a disk that no array of a picture contains
 
 
 class Picture(NamedTuple):
-    """The scene at one moment, as `RunFolder.frame` stores it; the columns are those of `postproc.quantities`.
+    """The scene at one moment, in the form that `RunFolder.frame` stores; `postproc.quantities` explains the columns.
 
-    `grains` holds grains and base, `contacts` those between anything shown, `intruder` the driven body's disks with its
-    `centre` and, for a single disk, its `angle`, among spheres its `turn`; dicts of arrays. `period` is the box's in x,
-    0 without, for spheres an array (3,).
+    `grains` holds grains and base, `contacts` all contacts between them and the body, `intruder` the driven body's disks with
+    its `centre` and, for a single disk, its `angle`, for a body among spheres its `turn`; all are dicts of arrays. `period`
+    is the period of the box in x, 0 without one; for spheres it is an array (3,).
     """
 
     grains: dict
@@ -33,7 +34,7 @@ class Picture(NamedTuple):
 
 
 def taken(grains, base, intruder):
-    """Return the `Picture` of this moment, of the disks with the ids `grains` and `base` and the body `intruder`."""
+    """Return the present `Picture` of the disks with the ids `grains` and `base` and of the body `intruder`."""
     from yade import O
 
     shown = np.concatenate([np.asarray(grains, int), np.asarray(base, int)])
@@ -69,7 +70,7 @@ def beads_of(intruder):
 
 
 def period_of_box():
-    """Return the period in x, 0 without, a float; of a scene of spheres those in x, y, z, (3,)."""
+    """Return the period in x as a float, 0 without one; for a scene of spheres the periods in x, y, z, (3,)."""
     from yade import O
 
     in_space, loop = scene.dimensions() == 3, scene.fast_loop()
@@ -80,7 +81,7 @@ def period_of_box():
 
 
 def in_one_image(x, n, centre, axis, period):
-    """Return x with the first `n`, and in place centre[axis], moved into [0, period), the rest beside the centre."""
+    """Move the first `n` of x, and centre[axis] in place, into [0, period), the other x next to the centre; return x."""
     if period == 0:
         return x
     beside = x[n:] - centre[axis]
@@ -95,9 +96,9 @@ def wrapped(x, period):
 
 
 def pose(intruder, centre):
-    """Return the centre of a body and, of a single disk, the angle by which it has turned [rad], in (-pi, pi].
+    """Return the centre of a body and, for a single disk, the angle by which it has turned [rad], in (-pi, pi].
 
-    A clump's places of beads say how it has turned. Of a body among spheres it is the quaternion `turn`, (w, x, y, z).
+    The positions of a clump's beads show how it has turned. For a body among spheres the quaternion `turn`, (w, x, y, z), does.
     """
     from yade import O
 
@@ -114,15 +115,15 @@ def pose(intruder, centre):
 def contacts(ids, rows, n, solid=None):
     """Return the contacts between disks `ids`, of which the first `n` are shown as grains and base, and with flat walls.
 
-    `rows` are the disks' columns, `solid` is the id of a driven body without disks. Each contact stands once, from its
-    smaller id; they come by rising ids.
+    `rows` are the disks' columns, `solid` is the id of a driven body without disks. Each contact appears once, with its
+    smaller id first; contacts are sorted by ids.
     """
     from yade import O
 
     row_of_id = np.full(len(O.bodies) + 1, NOT_SHOWN)
     row_of_id[ids] = np.arange(len(ids))
     if solid is not None:
-        row_of_id[solid] = len(ids)  # behind all disks
+        row_of_id[solid] = len(ids)  # after all disks
     table = ordered(present_contacts())
     i, j = row_of_id[table["i"]], np.where(table["j"] >= 0, row_of_id[table["j"]], table["j"])
     kept = (i != NOT_SHOWN) & (j != NOT_SHOWN)
@@ -130,7 +131,7 @@ def contacts(ids, rows, n, solid=None):
     of_solid = i == len(ids)
     begin, side = np.where(of_solid, j, i), np.where(
         of_solid, -1, 1
-    )  # the point is seen from a disk: a solid has no radius
+    )  # the contact point is computed from a disk, because a solid has no radius
     normal, reach = table["normal"], side * (rows["r"][begin] - table["overlap"] / 2)
     axes = "xyz" if "z" in rows else "xy"
     return dict(
@@ -157,12 +158,12 @@ def tangential_in_space(table):
 
 
 def named(row, n):
-    """Return what a contact calls a disk: its row among the first `n`, INTRUDER beyond; walls stay as they are."""
+    """Return the names of disks in contacts: the row if it is below `n`, else INTRUDER; names of walls do not change."""
     return np.where(row >= n, INTRUDER, row)
 
 
 def present_contacts():
-    """Return the table of all contacts at the present positions, from the loop that runs."""
+    """Return the table of all contacts at the present positions, from the loop of the scene."""
     from yade import O
 
     loop = scene.fast_loop()
@@ -175,10 +176,10 @@ def present_contacts():
 
 
 def ordered(table):
-    """Return a table of contacts with the smaller id as i, by rising ids; walls are second in any case.
+    """Return a table of contacts sorted by ids, with the smaller id as i; walls are always second.
 
-    Turning a contact round turns the normal and forces, which act on j. Slip is of i against j: of disks, along z x n, it
-    stays, and a vector turns round.
+    Exchanging the two sides of a contact reverses the normal and the forces, which act on j. Slip is that of i against j: for
+    disks it is a number along z x n and keeps its sign, for spheres it is a vector and is reversed.
     """
     turned = (table["j"] >= 0) & (table["i"] > table["j"])
     sides = dict(i=np.where(turned, table["j"], table["i"]), j=np.where(turned, table["i"], table["j"]))

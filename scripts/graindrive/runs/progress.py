@@ -1,4 +1,4 @@
-"""Let something march in blocks of steps, showing rate and time left, open to signals."""
+"""Runs a `March` in blocks of steps, shows its rate and the time left, and reacts to signals."""
 
 import time
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from .progress_line import ProgressLine
 
 @dataclass(frozen=True)
 class Timing:
-    """What a sequence of steps cost: `seconds` is the time in the march, without the callbacks between blocks.
+    """The cost of a sequence of steps: `seconds` is the time in the march, without the callbacks between blocks.
 
     `size` is the work of one step.
     """
@@ -21,7 +21,7 @@ class Timing:
 
     @property
     def work_per_second(self):
-        """Work over seconds [1/s], of a scene of grains particle-steps; NaN when nothing was run."""
+        """Work over seconds [1/s], for grains in particle-steps; NaN if no step was run."""
         return self.size * self.steps / self.seconds if self.seconds > 0 else float("nan")
 
 
@@ -29,17 +29,17 @@ MOST_STEPS = 1e10  # the papers' longest runs take 1e8
 
 
 def require_feasible(steps, way_out="raise dt_factor or shorten the run"):
-    """UsageError for a run that would not end in a lifetime, saying how many steps it would take and the `way_out`."""
+    """Raise UsageError for a run of more than `MOST_STEPS` steps, with their number and the `way_out`."""
     if not steps <= MOST_STEPS:
         raise UsageError(f"the run would take {steps:.3g} steps, more than {MOST_STEPS:.0e}; {way_out}")
 
 
 def run_blocks(march, total_steps, block, on_block=None, *, label="run", pauses=(), on_pause=None, aim=None):
-    """Have a `March` go `total_steps` steps, calling `on_block(steps_done)` after every `block`; return the `Timing`.
+    """Advance a `March` by `total_steps` steps and call `on_block(steps_done)` after every `block`; return the `Timing`.
 
-    At `pauses`, numbers of steps that lie inside blocks, `on_pause(steps_done)` is called. A true answer of `on_block` ends
-    the run early. For a run that ends early as a rule, the `Calming` `aim` says how far it is; it measures before
-    `on_block` is called. Raises what `march.advance` raises, `Interrupted` on a signal, UsageError for more than 1e10 steps.
+    At `pauses`, numbers of steps inside blocks, `on_pause(steps_done)` is called. If `on_block` returns true, the run ends
+    early. If a run usually ends early, the `Calming` object `aim` shows its progress instead; it measures before each call of
+    `on_block`. Raises what `march.advance` raises, `Interrupted` on a signal, UsageError for more than 1e10 steps.
     """
     if total_steps < 0 or block < 1:
         raise ValueError(f"steps must be >= 0 and block >= 1, got {total_steps} and {block}")
@@ -61,7 +61,7 @@ def run_blocks(march, total_steps, block, on_block=None, *, label="run", pauses=
 
 
 def timed(march, steps):
-    """Have a march go on by so many steps, unless a signal asks to stop before or after; return the seconds that took."""
+    """Advance a march by `steps` steps and return the seconds that this took; a signal before or after is raised."""
     signals.check()
     start = time.perf_counter()
     march.advance(steps)
@@ -71,13 +71,13 @@ def timed(march, steps):
 
 
 class Every:
-    """Says `due` once in so many seconds of wall time, the first time after that many."""
+    """A timer: `due` is true once per `seconds` of wall time, for the first time after `seconds`."""
 
     def __init__(self, seconds):
         self.seconds, self.last = seconds, time.monotonic()
 
     def due(self):
-        """True if `seconds` have passed since it last was."""
+        """True if `seconds` have passed since it was last true."""
         now = time.monotonic()
         if now - self.last < self.seconds:
             return False

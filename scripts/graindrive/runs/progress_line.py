@@ -1,18 +1,18 @@
-"""What a person sees of a running loop: a bar, or lines in a log, with the rate, and the time left or how calm grains are."""
+"""Shows the progress of a running loop as a bar or as lines in a log: rate, and time left or kinetic energy of the grains."""
 
 import sys
 import time
 
 import numpy as np
 
-SILENCE = 30.0  # s of wall time after which a log gets a line although there is no further tenth
+SILENCE = 30.0  # s of wall time after which a log gets a line even if no further tenth was reached
 
 
 class Calming:
-    """How far grains are on their way to rest, where nobody knows how many steps that takes.
+    """The progress of grains towards rest, used when the number of steps is not known in advance.
 
-    `measure()` gives their kinetic energy, `target` what it must fall below, both in `unit`. The way is the energy's from
-    its highest value to the target, on a logarithmic scale; if it takes `least_steps`, those are the first half.
+    `measure()` returns their kinetic energy, which must fall below `target`, both in `unit`. Progress is measured on a
+    logarithmic scale from the highest energy to the target; if `least_steps` are required, they are the first half of it.
     """
 
     def __init__(self, measure, target, unit, least_steps=0):
@@ -20,14 +20,14 @@ class Calming:
         self.energy, self.highest, self.share = np.inf, 0.0, 0.0
 
     def look(self, done):
-        """Measure after `done` steps; return the share of the way so far, which never falls."""
+        """Measure after `done` steps; return the progress so far, 0 to 1, which never decreases."""
         self.energy = self.measure()
         self.highest = max(self.highest, self.energy)
         self.share = max(self.share, self.way(done))
         return self.share
 
     def way(self, done):
-        """Return the share of the way by what was measured after `done` steps."""
+        """Return the progress, 0 to 1, according to the last measurement, after `done` steps."""
         if self.least_steps == 0:
             return self.calmed()
         waited = done / self.least_steps
@@ -40,19 +40,19 @@ class Calming:
         return float(np.log(self.highest / self.energy) / np.log(self.highest / self.target))
 
     def reached(self, done):
-        """True if the energy that was measured last is below the target, and `done` steps are enough."""
+        """True if the last measured energy is below the target and `done` is at least `least_steps`."""
         return self.energy < self.target and done > self.least_steps
 
     def in_words(self):
-        """Return the energy and its target."""
-        return f"kinetic energy {self.energy:.2g} {self.unit}, to fall below {self.target:.2g}"
+        """Return the energy and its target as text."""
+        return f"kinetic energy {self.energy:.2g} {self.unit}, target {self.target:.2g}"
 
 
 class ProgressLine:
     """A bar on a terminal, one line per 10 % elsewhere, on stderr; both show the rate and the time left.
 
-    `size` is the work of one step in `unit`; of 0 steps alone are counted. With an `aim`, a `Calming`, the per cent are its
-    own and its words stand in place of the time left, which nobody knows.
+    `size` is the work of one step in `unit`; if it is 0, steps are counted. With an `aim`, a `Calming`, the percentage and the
+    text of the aim are shown in place of the time left, which is then unknown.
     """
 
     def __init__(self, total_steps, size, label, aim=None, unit="particle-steps"):
@@ -76,7 +76,7 @@ class ProgressLine:
         return self
 
     def update(self, done):
-        """Show that `done` steps of the total are run."""
+        """Show that `done` steps of the total are done."""
         if self.aim is not None:
             self.show_aim(done)
         elif self.bar is not None:
@@ -86,7 +86,7 @@ class ProgressLine:
         self.done = done
 
     def show_aim(self, done):
-        """Show how far the aim is; in a log also where it came no further for long."""
+        """Show the progress of the aim; in a log also if it has not changed for `SILENCE` seconds."""
         before, now = self.aim.share, self.aim.look(done)
         words = f"{self.aim.in_words()}, {self.rate(done)}"
         if self.bar is not None:
@@ -96,22 +96,22 @@ class ProgressLine:
             self.tell(int(10 * now), words)
 
     def tell(self, tenths, words):
-        """Print a line, at so many tenths."""
+        """Print a line with `tenths` of the progress."""
         self.tenths, self.told = tenths, time.perf_counter()
         print(f"{self.label}: {10 * tenths:3d} %, {words}", file=sys.stderr, flush=True)
 
     def rate(self, done):
-        """Return in words the mean rate so far."""
+        """Return the mean rate so far as text."""
         rate = done / self.elapsed()
         return f"{rate * self.size / 1e6:.3g} M {self.unit}/s" if self.size else f"{rate:.3g} steps/s"
 
     def rate_and_time_left(self, done):
-        """Return in words the mean rate so far and the time left at that rate."""
+        """Return the mean rate so far and the time left at that rate as text."""
         left = self.elapsed() * (self.total - done) / done
         return f"{self.rate(done)}, {int(left) // 60}:{int(left) % 60:02d} left"
 
     def elapsed(self):
-        """Return the seconds since the line was made, never 0."""
+        """Return the seconds since the line was made, always > 0."""
         return max(time.perf_counter() - self.start, 1e-9)
 
     def __exit__(self, *_):

@@ -1,4 +1,4 @@
-"""Where a run comes from: versions, processor, seed; nothing that names a host, a user or a path."""
+"""The provenance of a run: versions, processor, seed; it names no host, no user and no path."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ from .. import __version__
 
 
 def provenance(parameters, study):
-    """Return the dict of plain values that says by what code and on what processor a run was made."""
+    """Return a dict of plain values on the code and the processor that made a run."""
     return {
         "study": study,
         "code_version": code_version(),
@@ -24,7 +24,7 @@ def provenance(parameters, study):
 
 
 def code_version():
-    """Return `git describe` of the checkout that this file stands in, else the package's version."""
+    """Return `git describe` of the checkout that contains this file, else the package's version."""
     folder = Path(__file__).resolve().parent
     command = ["git", "--no-optional-locks", "-C", str(folder), "describe", "--always", "--dirty", "--tags"]
     environment = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
@@ -44,13 +44,13 @@ def code_version():
 
 
 def yade_version():
-    """Return YADE's version, "none" when it is not loaded."""
+    """Return YADE's version, "none" if YADE is not loaded."""
     config = sys.modules.get("yade.config")
     return getattr(config, "version", "none")
 
 
 def cpu_model():
-    """Return the processor's model name, "unknown" where the kernel does not tell."""
+    """Return the processor's model name, "unknown" if the kernel does not provide it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""Lets a `March` go on in blocks, samples it after each, and keeps checkpoints: a run goes on as if never interrupted."""
+"""Runs a `March` in blocks, samples it after each block and writes checkpoints, so that an interrupted run can continue."""
 
 import contextlib
 import sys
@@ -10,7 +10,7 @@ from ..base.errors import EngineError, UsageError, one_line
 
 
 class Track:
-    """Rows that a study needs again when it goes on: dicts of numbers and arrays, kept in checkpoints."""
+    """Rows that a study needs again after a resume: dicts of numbers and arrays, stored in checkpoints."""
 
     FILE = "track.npz"
 
@@ -24,7 +24,7 @@ class Track:
         return len(next(iter(self.columns.values()), ()))
 
     def append(self, row):
-        """Add a row, a dict of numbers and arrays with the same names every time."""
+        """Add a row, a dict of numbers and arrays; all rows have the same names."""
         for name, value in row.items():
             self.columns.setdefault(name, []).append(value)
 
@@ -38,9 +38,9 @@ class Track:
 
 
 class Frames:
-    """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes those that it lacks.
+    """Pictures that `picture()` takes at given `steps` (whole numbers); a resumed run takes the missing ones.
 
-    `picture()` returns what `RunFolder.frame` takes behind the time.
+    `picture()` returns the arguments of `RunFolder.frame` after the time.
     """
 
     def __init__(self, folder, steps, picture):
@@ -48,11 +48,11 @@ class Frames:
         self.due = sorted({int(step) for step in steps})[self.taken() :]
 
     def taken(self):
-        """Return how many pictures the folder has; a resumed run has some at its start."""
+        """Return the number of pictures in the folder; a resumed run may have some at its start."""
         return self.folder.frames
 
     def store(self, t):
-        """Put a picture of the time `t` into the folder."""
+        """Store a picture at the time `t` in the folder."""
         self.folder.frame(t, *self.picture())
 
     def take_if_due(self, done, t):
@@ -61,21 +61,21 @@ class Frames:
             self.take(done, t)
 
     def take_what_is_left(self, done, t):
-        """Take one picture more if the run ended at `done`, at the time `t`, before all were due."""
+        """Take one more picture if the run ended early, at the step `done` and the time `t`, before all pictures were due."""
         if self.due and done != self.last:
             self.take(done, t)
 
     def take(self, done, t):
-        """Take the next picture, of the time `t` that `done` steps make."""
+        """Take the next picture, after `done` steps, at the time `t`."""
         self.last = done
         self.due.pop(0)
         self.store(t)
 
 
 class FieldFrames(Frames):
-    """Pictures of a continuum's fields, as `Frames` of grains: `picture()` returns a dict of arrays.
+    """Pictures of a continuum's fields, like `Frames` for grains: `picture()` returns a dict of arrays.
 
-    They are the groups `flow_frames/0001` … of the run folder, each with its time as the attribute `t`.
+    They are stored as the groups `flow_frames/0001` … of the run folder, each with its time as the attribute `t`.
     """
 
     GROUP = "flow_frames"
@@ -88,16 +88,16 @@ class FieldFrames(Frames):
 
 
 def load_stage(folder, march, names=()):
-    """Have a `March` take up where the resumed run of `folder` goes on; return the facts of its `stage` by these names.
+    """Load the checkpoint of a resumed run of `folder` into a `March`; return those facts of its `stage` that `names` lists.
 
-    UsageError for a checkpoint that this version cannot go on from; the remains stay as they are.
+    UsageError for a checkpoint that this version cannot continue; the remains are left unchanged.
     """
     try:
         march.load(folder.resumed["folder"])
     except RuntimeError as error:
         remains = folder.resumed["remains"]
         raise UsageError(
-            f"the scene in {remains} cannot be gone on from ({one_line(error, 200)}); remove {remains.name} or move it away"
+            f"the scene in {remains} cannot be continued ({one_line(error, 200)}); remove {remains.name} or move it away"
             " to start anew"
         ) from None
     return {name: folder.resumed[name] for name in names}
@@ -105,7 +105,7 @@ def load_stage(folder, march, names=()):
 
 @contextlib.contextmanager
 def overlap_advice(keys):
-    """Add to the message of a guard that stopped grains which overlap too far which `keys` of the study may help."""
+    """Add advice to the error of the overlap guard: `keys` of the study that may help."""
     try:
         yield
     except EngineError as error:
@@ -115,19 +115,19 @@ def overlap_advice(keys):
 
 
 def announce(folder, *, grains, dt, ratio, unit, also=""):
-    """Say of how many grains and of what time step a run is, with words that are `also` known, and note it in its folder."""
+    """Print the number of grains and the time step of a run, with the further text `also`; note both in its folder."""
     folder.note(dt=dt, dt_over_critical=ratio, n_grains=grains)
     print(f"{grains} grains,{also} dt = {dt:.3g} {unit}, dt/dt_crit = {ratio:.3g}", file=sys.stderr)
 
 
 def run_sampled(folder, march, steps, block, sample, *, label, track=None, frames=None, stage=None, before=0):
-    """Have a `March` go `steps` steps from the run's start, calling `sample(done)` after every `block`; return the steps done.
+    """Run a `March` up to step `steps` of the run and call `sample(done)` after every `block`; return the steps done.
 
-    A true answer of `sample` ends the run. A run that was not resumed is sampled at 0 too; of one that was, the march stands
-    where its checkpoint does (`load_stage`). `frames` are taken at their own steps, inside of blocks too, and once more at
-    the end if that came early. A checkpoint of the march, the `track` and the facts `stage` is written every
-    `checkpoint_seconds`. Steps and rate go to the folder's provenance. A run of several parts says how many steps those
-    `before` this one took: its checkpoints count them, and one that was made before belongs to another part.
+    If `sample` returns true, the run ends. A new run is sampled at step 0 too; in a resumed run the march must have loaded the
+    checkpoint (`load_stage`). `frames` are taken at their own steps, also inside blocks, and once more at the end if the run
+    ends early. A checkpoint of the march, the `track` and the facts `stage` is written every `checkpoint_seconds`. Steps and
+    rate go to the folder's provenance. In a run of several parts, `before` is the number of steps of the earlier parts:
+    checkpoints count them, and a checkpoint with fewer steps belongs to an earlier part.
     """
     resumed = bool(folder.resumed) and folder.resumed["step"] > before
     first, stage = folder.resumed["step"] - before if resumed else 0, stage or {}
@@ -164,7 +164,7 @@ def run_sampled(folder, march, steps, block, sample, *, label, track=None, frame
 
 
 def note_rate(folder, march, steps, rate):
-    """Note in the folder how many steps were made and what work per second; of grains under the name that it has there."""
+    """Note in the folder the number of steps and the work per second; for grains under the name used there."""
     folder.note(steps=steps)
     if march.unit == "particle-steps":
         folder.note(particle_steps_per_second=rate)

@@ -1,8 +1,8 @@
-"""The data of a run while it grows: files that are readable at any moment, and their union `run.h5` at the end.
+"""The data of a running run: files that are readable at any moment, and `run.h5`, which combines them at the end.
 
 Time series go to an HDF5 file in single-writer-multiple-reader mode, which stays consistent whenever the process dies;
-everything else (frames, fields) is a file of its own, renamed into place when whole. `merge` makes of them one plain
-HDF5 file. `SeriesWriter.sum` and `item_sum` are checksums of what was written, by which a checkpoint knows its data again.
+every frame and every field is a separate file, renamed into place when complete. `merge` combines them into one plain
+HDF5 file. `SeriesWriter.sum` and `item_sum` are checksums of the written data, with which a checkpoint recognises its data.
 The layout is documented in postproc/README.md.
 """
 
@@ -20,12 +20,12 @@ UNREADABLE = (
     RuntimeError,
     KeyError,
     ValueError,
-)  # what h5py raises for files that are cut, foreign or damaged
+)  # errors of h5py for files that are truncated, damaged or not HDF5
 CHUNK_ROWS = 4096
 ROOM = 2**17  # bytes for the names and indices of a series file
 FLUSH_SECONDS = 1.0
 
-unwritten = []  # files that could not be closed: HDF5 crashes when such a file is let go of
+unwritten = []  # files that could not be closed; they are kept here because HDF5 crashes when such a file is released
 
 
 def new_sum(content=b""):
@@ -36,14 +36,14 @@ def new_sum(content=b""):
 class SeriesWriter:
     """Appends rows to the equally long time series of one file.
 
-    `units` maps each series to its unit; `first` holds rows to begin with, a dict of 1D arrays. The file bears its name
-    from when it can be read and holds the first rows. `rows` counts those given, `sum` is the checksum of those flushed.
+    `units` maps each series to its unit; `first` holds the first rows, a dict of 1D arrays. The file gets its name when it is
+    readable and holds the first rows. `rows` counts all rows appended, `sum` is the checksum of the flushed ones.
     """
 
     def __init__(self, path, units, first=None):
         self.path, temporary = whole_files.beside(path), whole_files.beside(path)
         self.units, self.rows = dict(units), 0
-        self.reserve()  # HDF5 crashes on a disk that is full: it never gets to write on one
+        self.reserve()  # HDF5 crashes on a full disk, so it may write only into reserved space
         self.file = h5py.File(temporary, "w", libver="latest")
         self.reserve()
         group = self.file.create_group("series")
@@ -61,7 +61,7 @@ class SeriesWriter:
         whole_files.put_in_place(temporary, self.path)
 
     def reserve(self):
-        """Keep room on the disk for all rows; OSError where there is none, and the file is then as before."""
+        """Reserve space on the disk for all rows; OSError if there is not enough, and the file is then unchanged."""
         chunks = len(self.units) * (self.rows // CHUNK_ROWS + 2)
         whole_files.reserve(self.path, int(1.02 * chunks * CHUNK_ROWS * 8) + ROOM)
 
@@ -81,7 +81,7 @@ class SeriesWriter:
             self.flush()
 
     def flush(self):
-        """Hand all rows to the operating system: after this they survive the death of the process."""
+        """Pass all rows to the operating system: after this they survive a kill of the process."""
         if self.waiting_rows:
             self.reserve()
         for name, parts in self.waiting.items():
@@ -96,13 +96,13 @@ class SeriesWriter:
         self.waiting_rows, self.last_flush = 0, time.monotonic()
 
     def sync(self):
-        """Flush, and have the disk hold all rows: after this they survive a power failure too."""
+        """Flush all rows to the disk: after this they survive a power failure too."""
         self.flush()
         whole_files.sync(self.path)
 
     @property
     def sum(self):
-        """Checksum of all flushed rows with their names and units, as `series_sum` gives it for what is read back."""
+        """Checksum of all flushed rows with their names and units; `series_sum` returns the same for rows read back."""
         return combined_sum(self.sums, self.units)
 
     def close(self):
@@ -115,7 +115,7 @@ class SeriesWriter:
 
 
 def close(file):
-    """Close an HDF5 file; one that cannot be written out is held until the process ends."""
+    """Close an HDF5 file; if it cannot be written, it is kept open until the process ends."""
     try:
         file.close()
     except Exception:
@@ -129,13 +129,13 @@ def series_sum(series, units):
 
 
 def combined_sum(sums, units):
-    """Return one checksum of those of several series."""
+    """Return one checksum that combines those of several series."""
     lines = [f"{name} {units[name]} {sums[name].hexdigest()}\n" for name in sorted(sums)]
     return new_sum("".join(lines).encode()).hexdigest()
 
 
 def item_sum(group):
-    """Return the checksum of an HDF5 group: names, types, shapes, contents and attributes of all that is below it."""
+    """Return the checksum of an HDF5 group: names, types, shapes, contents and attributes of all its members."""
     total = new_sum()
     for name in sorted(group):
         inside = group[name]
@@ -146,7 +146,7 @@ def item_sum(group):
 
 
 def content_of(dataset):
-    """Return type, shape and contents of a dataset as bytes; of text, which HDF5 stores elsewhere, its words."""
+    """Return type, shape and contents of a dataset as bytes; for text, which HDF5 stores elsewhere, the text itself."""
     array = np.asarray(dataset[()])
     plain = repr(array.tolist()).encode() if array.dtype.hasobject else np.ascontiguousarray(array).tobytes()
     return f"{array.dtype.str} {array.shape} ".encode() + plain
@@ -158,12 +158,12 @@ def attributes_of(item):
 
 
 def files_stay_open():
-    """True if HDF5 holds a file that it could not close, as on a full disk."""
+    """True if HDF5 could not close some file, for example because the disk is full."""
     return bool(unwritten) or h5py.h5f.get_obj_count(h5py.h5f.OBJ_ALL, h5py.h5f.OBJ_FILE) > 0
 
 
 def write_item(folder, name, arrays, attributes=None):
-    """Write the arrays of one group (`frames/0001`) into a file of its own below `folder`, whole or not at all.
+    """Write the arrays of one group (`frames/0001`) into a separate file below `folder`, whole or not at all.
 
     `arrays` maps dataset names (with / for subgroups) to an array or to (array, unit); `attributes` is a dict. Returns the
     item's checksum.
@@ -181,7 +181,7 @@ def write_item(folder, name, arrays, attributes=None):
 
 
 def write_group(group, arrays, attributes=None):
-    """Write arrays, or (array, unit) pairs, as datasets of an HDF5 group, compressed where that pays."""
+    """Write arrays, or (array, unit) pairs, as datasets of an HDF5 group; large ones are compressed."""
     for name, content in arrays.items():
         array, unit = content if isinstance(content, tuple) else (content, None)
         array = np.asarray(array)
@@ -194,16 +194,16 @@ def write_group(group, arrays, attributes=None):
 
 
 def read_series(path, rows=None):
-    """Return ({name: 1D array}, {name: unit}) of a series file, also one that a dead process left behind.
+    """Return ({name: 1D array}, {name: unit}) of a series file, which may come from a killed process.
 
-    `rows` cuts the series; without it they are as long as the shortest, since death may strike between two of them.
+    `rows` limits the length; without it all series are cut to the shortest, since a kill may come between two writes.
     """
     with h5py.File(path, "r", libver="latest", swmr=True) as file:
         return series_in(file, rows)
 
 
 def series_in(file, rows=None):
-    """Return what `read_series` does of an open file."""
+    """Return the same as `read_series`, for an open file."""
     group = file.get("series", {})
     units = {name: dataset.attrs.get("unit", "-") for name, dataset in group.items()}
     rows = min([len(dataset) for dataset in group.values()], default=0) if rows is None else rows
@@ -211,9 +211,9 @@ def series_in(file, rows=None):
 
 
 def merge(target, series, items, describe):
-    """Write one plain HDF5 file `target` of a series file and item files, in one step; `describe(file)` adds the rest.
+    """Combine a series file and item files into one plain HDF5 file `target`, in one step; `describe(file)` adds the rest.
 
-    `series` is a path or None, `items` a list of paths in the order to copy; what two of them hold is copied once.
+    `series` is a path or None, `items` a list of paths in the order to copy; content of several files is copied once.
     """
 
     def fill(file):
@@ -239,7 +239,7 @@ def write_file(target, fill):
 
 
 def rows_in(path):
-    """Return how many whole rows of series a file holds; -1 where there is no file that can be read."""
+    """Return the number of complete rows of series in a file; -1 if the file cannot be read."""
     try:
         with h5py.File(path, "r", libver="latest", swmr=True) as file:
             return min([len(dataset) for dataset in file.get("series", {}).values()], default=0)

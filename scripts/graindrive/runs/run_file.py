@@ -1,6 +1,6 @@
-"""What stands where in `run.h5`, written and read: what the run is, its parameters, constants and provenance, frames, groups.
+"""Writes and reads the parts of `run.h5`: description of the run, parameters, constants, provenance, frames, groups.
 
-How the file grows during a run, and its time series, are `run_data`'s. postproc/README.md documents the layout.
+`run_data` handles the file during a run, and its time series. postproc/README.md documents the layout.
 """
 
 from typing import NamedTuple
@@ -10,12 +10,12 @@ import numpy as np
 
 from .run_data import UNREADABLE
 
-NAME, ABOUT = "run.h5", "about.h5"  # in a run folder; while a run grows its `About` has a file of its own
+NAME, ABOUT = "run.h5", "about.h5"  # in a run folder; during a run its `About` is in a separate file
 PARTS_OF_FRAME = ("contacts", "intruder")
 
 
 class Described(NamedTuple):
-    """A number or word with its unit and meaning; `auto` says whether it was taken for a key that is `auto`."""
+    """A number or word with its unit and meaning; `auto` is true if it is the derived value of a key that is `auto`."""
 
     value: object
     unit: str
@@ -24,7 +24,7 @@ class Described(NamedTuple):
 
 
 class About(NamedTuple):
-    """What a run is: attributes of the file (state, study, family, digest, …) and dicts of parameters, constants, provenance.
+    """Description of a run: attributes of the file (state, study, family, digest, …), parameters, constants, provenance.
 
     Parameters and constants are {name: Described}, provenance {name: plain value}.
     """
@@ -36,11 +36,11 @@ class About(NamedTuple):
 
 
 def opened(path, growing=False):
-    """Open an HDF5 file for reading; `growing` for one that a run may be writing to."""
+    """Open an HDF5 file for reading; set `growing` if a run may still write to it."""
     return h5py.File(path, "r", libver="latest", swmr=True) if growing else h5py.File(path, "r")
 
 
-# ---- what a run is ---------------------------------------------------------------------------------------------------
+# ---- description of a run --------------------------------------------------------------------------------------------
 
 
 def write_about(file, about):
@@ -56,7 +56,7 @@ def write_about(file, about):
 
 
 def read_about(file):
-    """Return the `About` in an open HDF5 file; KeyError where there is none. Files of older versions hold no constants."""
+    """Return the `About` in an open HDF5 file; KeyError if there is none. Files of older versions hold no constants."""
     return About(
         {name: plain(value) for name, value in file.attrs.items()},
         {name: described(dataset) for name, dataset in file["parameters"].items()},
@@ -73,13 +73,13 @@ def described(dataset):
 
 
 def read_attribute(path, name):
-    """Return an attribute of the file `path`, which may be growing, as text; raises one of UNREADABLE where there is none."""
+    """Return an attribute of the file `path`, which may be growing, as text; raises one of UNREADABLE if there is none."""
     with opened(path, growing=True) as file:
         return str(file.attrs[name])
 
 
 def attribute(path, name):
-    """Return an attribute of the file `path`, which may be growing, as text; None where there is none."""
+    """Return an attribute of the file `path`, which may be growing, as text; None if there is none."""
     try:
         return read_attribute(path, name)
     except UNREADABLE:
@@ -87,7 +87,7 @@ def attribute(path, name):
 
 
 def parameters_in(path):
-    """Return {key: Described} of the parameters that the file `path` holds; empty where it cannot be read."""
+    """Return {key: Described} of the parameters in the file `path`; empty if it cannot be read."""
     try:
         with opened(path, growing=True) as file:
             return {name: described(dataset) for name, dataset in file["parameters"].items()}
@@ -96,7 +96,7 @@ def parameters_in(path):
 
 
 def read_through(path):
-    """Read every dataset of the file `path`: HDF5 finds what is cut or torn only there. Raises one of UNREADABLE."""
+    """Read every dataset of the file `path`, since only this finds all damage; raises one of UNREADABLE."""
     with opened(path) as file:
         file.visititems(lambda _, item: item[()] is None if isinstance(item, h5py.Dataset) else None)
 
@@ -105,35 +105,35 @@ def read_through(path):
 
 
 def frame_group(number):
-    """Return the name of the group of a frame, counted from 1."""
+    """Return the name of the group of a frame; frames are counted from 1."""
     return f"frames/{number:04d}"
 
 
 def frame_arrays(grains, contacts, intruder):
-    """Return the arrays of a frame's group: the grains' by name, the others' as contacts/NAME and intruder/NAME."""
+    """Return the arrays of a frame's group: those of the grains by NAME, the others as contacts/NAME and intruder/NAME."""
     parts = zip(PARTS_OF_FRAME, (contacts, intruder))
     inner = {f"{part}/{name}": array for part, columns in parts for name, array in columns.items()}
     return {**grains, **inner}
 
 
 def read_frame(group):
-    """Return (t, grains, contacts, intruder, period) of a frame's HDF5 group; period 0 where an older version stored none."""
+    """Return (t, grains, contacts, intruder, period) of a frame's HDF5 group; period is 0 if an older version stored none."""
     contacts, intruder = (arrays_in(group.get(part, {})) for part in PARTS_OF_FRAME)
     return float(group.attrs["t"]), arrays_in(group), contacts, intruder, plain(group.attrs.get("period", 0.0))
 
 
 def arrays_in(group):
-    """Return {name: array} of the datasets that stand in a group, or in an empty dict."""
+    """Return {name: array} of the datasets in a group; an empty dict is allowed in place of a group."""
     return {name: item[()] for name, item in group.items() if isinstance(item, h5py.Dataset)}
 
 
 def groups_in(group):
-    """Return the names of the groups that stand in a group, or in an empty dict, sorted."""
+    """Return the sorted names of the groups in a group; an empty dict is allowed in place of a group."""
     return sorted(name for name, item in group.items() if isinstance(item, h5py.Group))
 
 
 def arrays_listed(file):
-    """Return [(group, name, shape, unit)] of the arrays in all groups but those of numbers; of the frames the first alone."""
+    """Return [(group, name, shape, unit)] of all arrays outside the groups of single numbers; only the first frame is listed."""
     found = []
 
     def look(path, item):
@@ -148,12 +148,12 @@ def arrays_listed(file):
 
 
 def labels_in(group):
-    """Return ({dataset: unit}, {attribute: value}) of a group; pure words have no unit."""
+    """Return ({dataset: unit}, {attribute: value}) of a group; text has no unit."""
     units = {name: item.attrs["unit"] for name, item in group.items() if "unit" in item.attrs}
     return units, {name: plain(value) for name, value in group.attrs.items()}
 
 
 def plain(value):
-    """Return an HDF5 scalar as Python's number or text; an array stays one."""
+    """Return an HDF5 scalar as a Python number or text; an array is returned unchanged."""
     value = value.item() if isinstance(value, np.generic) else value
     return value.decode() if isinstance(value, bytes) else value

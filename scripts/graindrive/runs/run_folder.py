@@ -1,6 +1,6 @@
-"""The run folder: written under a hidden name, renamed when complete, saved under a telling name when it ends early.
+"""The run folder: written under a hidden name, renamed when complete, kept as NAME.interrupted or NAME.failed otherwise.
 
-What each state of it on disk means to the next call stands in `run_remains.py`.
+`run_remains.py` explains what each state of the folder on disk means for the next call.
 """
 
 import math
@@ -29,15 +29,14 @@ CONTRACT = (
 
 
 class RunFolder:
-    """Context in which one run writes its data; `path` is the folder while it grows, `out` its name when complete.
+    """Context in which one run writes its data; `path` is the folder during the run, `out` its name when complete.
 
-    On entry `out` is checked and its neighbour `.NAME.part-PID` made; nothing is ever overwritten. A good end writes
-    `run.h5` and `summary.json`, calls `figure(path)`, exports what is asked for and renames the folder to `out`.
-    A UsageError removes it; a
-    signal keeps what was measured as `NAME.interrupted`, any other failure as `NAME.failed`. Entering raises UsageError
-    if `out` cannot be used, AlreadyComplete if the same run is there. `study` is the study's name, `family` that of the
-    study of which it is a preset, `constants` its {name: Constant}, `units` {quantity: unit} of what it summarizes and
-    `postproc.quantities` does not know.
+    On entry `out` is checked and the folder `.NAME.part-PID` is made beside it; nothing is ever overwritten. A successful end
+    writes `run.h5` and `summary.json`, calls `figure(path)`, writes the exports and renames the folder to `out`. A UsageError
+    removes the folder; after a signal the data are kept as `NAME.interrupted`, after any other failure as `NAME.failed`.
+    Entering raises UsageError if `out` cannot be used, AlreadyComplete if the same run exists. `study` is the study's name,
+    `family` the name of the study of which it is a preset, `constants` its {name: Constant}, `units` the units of summarized
+    quantities that `postproc.quantities` does not know, {quantity: unit}.
     """
 
     def __init__(self, parameters, *, study, figure=None, constants=None, units=None, family=None):
@@ -51,7 +50,7 @@ class RunFolder:
         self.start_processor, self.processor_before = processor_time(), 0.0
 
     def declare_series(self, **units):
-        """Name the time series and their units, once, before the first `append`."""
+        """Declare the time series and their units, once, before the first `append`."""
         if self.series is not None:
             raise ValueError("the series are declared already")
         first = None
@@ -68,7 +67,7 @@ class RunFolder:
     def frame(self, t, grains, contacts=None, intruder=None, period=0.0):
         """Store a picture of the bed at time `t` (see `picture.Picture`): dicts of 1D arrays, and the box's period.
 
-        It is a number, in x, for disks, and three numbers for spheres, whose `grains` have a column `z`.
+        The period is a number (along x) for disks, and three numbers for spheres, whose `grains` have a column `z`.
         """
         contacts = contacts or {}
         if "z" in grains:
@@ -82,7 +81,7 @@ class RunFolder:
         self.frames += 1
 
     def write(self, group, arrays, **attributes):
-        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group, none inside another.
+        """Store a dict of arrays, or of (array, unit), as an HDF5 group (`intruder`); once per group, and not inside another.
 
         Names that `postproc.quantities` knows get their units from there.
         """
@@ -99,7 +98,7 @@ class RunFolder:
     def summarize(self, **found):
         """Add quantities, and their standard errors as NAME_err, to summary.json.
 
-        Their units come from `postproc.quantities`; (value, unit) says one that stands elsewhere or differs.
+        Their units come from `postproc.quantities`; give (value, unit) for a unit that is missing there or differs.
         """
         for name, value in found.items():
             value, self.units[name] = value if isinstance(value, tuple) else (value, None)
@@ -107,23 +106,23 @@ class RunFolder:
 
     @property
     def wall_s(self):
-        """Wall time of the run so far [s], of a resumed one with what led to the checkpoint from which it went on."""
+        """Wall time of the run so far [s]; in a resumed run it includes the time before the checkpoint."""
         return self.wall_before + time.monotonic() - self.start
 
     @property
     def core_seconds(self):
-        """Processor time of all threads and programs of the run so far [s], of a resumed one with what led to its checkpoint."""
+        """Processor time of all threads and programs of the run so far [s], including the time before a checkpoint."""
         return self.processor_before + processor_time() - self.start_processor
 
     def note_cost(self):
-        """Put into the provenance what the run has cost: wall time, processor time, and the largest memory of this process."""
+        """Note the cost of the run in the provenance: wall time, processor time, and the largest memory of this process."""
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6  # Linux counts KiB
         self.note(wall_s=self.wall_s, core_seconds=self.core_seconds, peak_memory=memory)
 
     def checkpoint(self, save, step, **facts):
-        """Have `save(folder)` write all that is needed to go on from `step`; it replaces the older checkpoint.
+        """Write a checkpoint with `save(folder)`, from which the run can continue at `step`; it replaces the older one.
 
-        `facts` are plain values; with resume=1 they come back in `resumed`, with the checkpoint's `folder` and `step`.
+        `facts` are plain values; with resume=1 they are found in `resumed`, with the checkpoint's `folder` and `step`.
         """
         facts = {**facts, "step": step, "frames": self.frames, "items": self.items}
         facts.update(wall_s=self.wall_s, core_seconds=self.core_seconds)
@@ -154,7 +153,7 @@ class RunFolder:
         return self
 
     def begin(self):
-        """Look at the place and at what killed runs left there, then make the folder to write in; with resume=1 fill it."""
+        """Check `out`, settle the remains of killed runs, then make the folder to write in; with resume=1 fill it."""
         for parent in reversed([p for p in self.out.parents if not p.exists()]):
             parent.mkdir()
             self.made.append(parent)
@@ -170,7 +169,7 @@ class RunFolder:
             self.resume()
 
     def resume(self):
-        """Take over the checkpoint of an interrupted run of the same parameters, if there is one."""
+        """Copy the checkpoint of an interrupted run of the same parameters, if there is one."""
         self.resumed = run_remains.adopt(self.path, self.out, self.parameters.digest())
         if self.resumed is None:
             self.say("no interrupted run of these parameters to resume; starting anew")
@@ -182,14 +181,14 @@ class RunFolder:
         before, now = self.resumed["code_version"], self.provenance["code_version"]
         if before != now:
             self.note(code_version_before=before)
-            self.say(f"that was made by version {before}, this is {now}; the result will be of both")
+            self.say(f"version {before} made that run, this is version {now}; the result will come from both")
 
     def say(self, words):
-        """Say something on stderr in the name of the study."""
+        """Print a message on stderr, preceded by the name of the study."""
         print(f"{self.study}: {words}", file=sys.stderr)
 
     def remove_part(self):
-        """Remove the folder to write in, if it is ours, and those parents that were made for it and are empty."""
+        """Remove the folder of this run, if it made one, and those of its parents that were made for it and are empty."""
         if self.lock is not None and self.path.exists():
             run_place.remove(self.path, self.out)
         for parent in reversed(self.made):
@@ -213,14 +212,14 @@ class RunFolder:
                 self.keep("interrupted" if issubclass(kind, (Interrupted, KeyboardInterrupt)) else "failed")
 
     def complete(self):
-        """Finish all files and give the folder its right name; from the moment that `run.h5` is whole nothing can be lost."""
+        """Finish all files and rename the folder to `out`; nothing can be lost once `run.h5` is complete."""
         self.note_cost()
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
         own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
         summary_file.write(self.path, told)
         if lacking := without_value(self.summary):
-            self.say(f"the run gives no {', '.join(lacking)}: null in summary.json")
+            self.say(f"the run gives no value of {', '.join(lacking)}: null in summary.json")
         self.finish_data("complete")
         run_remains.draw(self.path, self.figure, self.parameters.exports)
         with run_place.held(self.out.parent):
@@ -228,7 +227,7 @@ class RunFolder:
             run_remains.take_name(self.path, self.out, self.parameters.digest())
 
     def keep(self, ending):
-        """Save what was measured as NAME.`ending`; remove the folder if nothing was, or no more than in what it went on from."""
+        """Keep the data as NAME.`ending`; remove the folder if it holds no data, or no more than the run that it resumed."""
         measured = self.resumed or self.frames or (self.series is not None and self.series.rows)
         if not measured and not checkpoint.folders(self.path):
             self.close()
@@ -237,18 +236,20 @@ class RunFolder:
         try:
             self.note_cost()
             self.finish_data(ending)
-        except (OSError, RuntimeError) as error:  # a full disk: what stands there now is all that there is
+        except (OSError, RuntimeError) as error:  # a full disk: the data stay in the unfinished folder
             self.say(f"the data so far are in {self.path}, unfinished: {one_line(error, 200)}")
             return
         with run_place.held(self.out.parent):
             self.close()
             kept = run_remains.keep(self.path, self.out, ending)
         self.say(
-            f"the data so far are kept in {kept}" if kept else "earlier remains are as far as this run came; they stay"
+            f"the data so far are kept in {kept}"
+            if kept
+            else "this run got no further than earlier remains, which are kept"
         )
 
     def finish_data(self, state):
-        """Make the one plain `run.h5` of all that was written; `state` says how the run ended."""
+        """Combine all written files into one plain `run.h5`; `state` says how the run ended."""
         if self.series is not None:
             self.series.close()
         series = self.path / "run.h5" if self.series is not None else None
@@ -256,7 +257,7 @@ class RunFolder:
         run_data.merge(self.path / "run.h5", series, items, lambda file: self.describe(file, state))
 
     def describe(self, file, state):
-        """Write what the run is, parameters, constants and provenance into an open HDF5 file."""
+        """Write description, parameters, constants and provenance of the run into an open HDF5 file."""
         attributes = dict(state=state, study=self.study, family=self.family, digest=self.parameters.digest())
         if self.resumed:
             attributes[checkpoint.SOURCE] = self.resumed["remains"].name
@@ -264,14 +265,14 @@ class RunFolder:
         run_file.write_about(file, run_file.About(attributes, self.parameters_described(), constants, self.provenance))
 
     def parameters_described(self):
-        """Return {key: Described} of the parameters, with the values that are taken for `auto`."""
+        """Return {key: Described} of the parameters, with the derived values in place of `auto`."""
         p = self.parameters
         meanings = {key: field.field_info.description or "" for key, field in p.__fields__.items()}
         taken = p.taken().items()
         return {key: run_file.Described(v, p.unit(key), meanings[key], getattr(p, key) is None) for key, v in taken}
 
     def close(self):
-        """Close the files that are open for writing, and let go of the lock."""
+        """Close the files that are open for writing, and release the lock."""
         if self.series is not None:
             self.series.close()
         if self.lock is not None:
@@ -279,18 +280,18 @@ class RunFolder:
 
 
 def processor_time():
-    """Return the processor time of this process, all its threads, and of the programs that it ran and that have ended [s]."""
+    """Return the processor time of this process with all its threads, and of its child processes that have ended [s]."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def without_value(summary):
-    """Return the names of quantities that are None; standard errors, which short runs lack, are left out."""
+    """Return the names of quantities that are None, without standard errors, which short runs often lack."""
     return [name for name, value in summary.items() if value is None and not name.endswith("_err")]
 
 
 def plain(quantities):
-    """Return a flat dict with NumPy's numbers as Python's, and None for what is not finite."""
+    """Return a flat dict with NumPy numbers as Python numbers, and None for numbers that are not finite."""
     flat = {}
     for key, value in quantities.items():
         value = value.item() if isinstance(value, (np.generic, np.ndarray)) else value

@@ -1,4 +1,4 @@
-"""The place of a run folder: whether it can be used, who is at work there, and the renames by which folders come and go."""
+"""The place of a run folder: checks whether it can be used and whether another run works there, and renames folders."""
 
 import contextlib
 import fcntl
@@ -11,43 +11,45 @@ from ..base import whole_files
 from ..base.errors import UsageError, one_line
 from .run_data import UNREADABLE
 
-LONGEST_NAME = 255 - len(".interrupted-9999")  # of a file system's names, in bytes
-HIDDEN_NAME = re.compile(r"\..+\.(part|old|gone)-\d+")  # as `hidden` makes them: such a folder does not outlive its run
+LONGEST_NAME = 255 - len(".interrupted-9999")  # bytes; file systems allow 255
+HIDDEN_NAME = re.compile(
+    r"\..+\.(part|old|gone)-\d+"
+)  # names that `hidden` makes; such folders are removed after the run
 LONGEST_SHOWN = 300  # characters of a path in a message
 
 
 class AlreadyComplete(Exception):
-    """The run folder is there already and holds a complete run of the same parameters."""
+    """The run folder exists and holds a complete run of the same parameters."""
 
 
 def place_of(given):
-    """Return the absolute path of `out=given`, links followed; UsageError where no folder can take that name at the end."""
+    """Return the absolute path of `out=given`, with links resolved; UsageError if no folder can get that name."""
     expanded, refused = os.path.expanduser(given), f"out={one_line(given, LONGEST_SHOWN)}"
     path = os.path.abspath(expanded)
     if given.startswith("~") and expanded == given:
-        raise UsageError(f"{refused} names a home that is not there; give the path itself")
+        raise UsageError(f"{refused} names a home folder that does not exist; give the path itself")
     if os.path.islink(path) and not os.path.exists(path):
         target = one_line(os.readlink(path), LONGEST_SHOWN)
-        raise UsageError(f"{refused} is a link to {target}, which is not there; make that folder or remove the link")
+        raise UsageError(f"{refused} is a link to {target}, which does not exist; make that folder or remove the link")
     path = Path(os.path.realpath(expanded))
     if not path.name or given.rstrip("/").endswith(".."):
         raise UsageError(f"{refused} is not the name of a run folder; give one below it")
     if HIDDEN_NAME.fullmatch(path.name):
         raise UsageError(
-            f"{refused} is a name that runs at work give to their folders, which are removed; leave the dot out"
+            f"{refused} is a name of the hidden folders of unfinished runs, which are removed; leave the dot out"
         )
     if os.path.ismount(path):
         raise UsageError(
             f"{refused} is a mount point, which no run folder can replace; give one below it, out={given}/run"
         )
     if len(os.fsencode(path.name)) > LONGEST_NAME:
-        raise UsageError(f"{refused} is a name of more than {LONGEST_NAME} bytes; give a shorter one")
+        raise UsageError(f"{refused} is longer than {LONGEST_NAME} bytes; give a shorter name")
     return path
 
 
 @contextlib.contextmanager
 def held(folder):
-    """Keep other processes from starting or ending a run in `folder` during this block, where its file system has locks."""
+    """Prevent other processes from starting or ending a run in `folder` during this block, if its file system has locks."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         with contextlib.suppress(OSError):
@@ -58,7 +60,7 @@ def held(folder):
 
 
 def refuse_what_is_there(run):
-    """Raise AlreadyComplete or UsageError unless the place is free, an empty folder, or with redo holds the same run.
+    """Raise AlreadyComplete or UsageError unless the place is free, an empty folder, or holds the same run and redo is set.
 
     With redo a damaged run is moved to NAME.damaged.
     """
@@ -74,13 +76,15 @@ def refuse_what_is_there(run):
         set_aside(out)
         return
     if problem:
-        raise UsageError(f"{given} holds a damaged run: {problem}; redo=1 makes it again and keeps this one")
+        raise UsageError(
+            f"{given} holds a damaged run: {problem}; redo=1 makes the run again and keeps the damaged one"
+        )
     if stored_digest(out) is None:
-        raise UsageError(f"{given} holds something else than a complete run; give another out= or move it away")
+        raise UsageError(f"{given} holds something other than a complete run; give another out= or move it away")
     if stored_digest(out) != run.parameters.digest():
         raise UsageError(f"{given} holds a run of other parameters{difference(run)}; give another out= or move it away")
     if not run.parameters.redo:
-        raise AlreadyComplete(f"{out} is there already, a complete run of these parameters (redo=1 runs it again)")
+        raise AlreadyComplete(f"{out} is there already, a complete run of these parameters (redo=1 makes it again)")
 
 
 def refuse_at_work(run):
@@ -99,7 +103,7 @@ def set_aside(out):
 
 
 def stored_digest(path):
-    """Return the digest of the parameters of the complete run in folder `path`; None if there is no such run."""
+    """Return the digest of the parameters of the complete run in the folder `path`; None if there is no such run."""
     try:
         if run_file.attribute(path / run_file.NAME, "state") == "complete" and summary_file.read(path) is not None:
             return run_file.attribute(path / run_file.NAME, "digest")
@@ -109,9 +113,9 @@ def stored_digest(path):
 
 
 def damage(path):
-    """Return in words what is wrong with the finished run in folder `path`; None if nothing is, or if it is no such run.
+    """Return a description of the damage of the finished run in the folder `path`; None if it is intact or not a finished run.
 
-    All of `run.h5` is read: HDF5 finds what is cut or torn only there.
+    The whole `run.h5` is read, since only this finds all damage.
     """
     if not (path / run_file.NAME).is_file():
         return None
@@ -128,10 +132,10 @@ def damage(path):
 
 
 def difference(run):
-    """Return in words the first parameter in which the stored run differs: " (period=4.0 there)"."""
+    """Return a description of the first parameter in which the stored run differs: " (period=4.0 there, …)"."""
     stored = run_file.parameters_in(run.out / run_file.NAME)
     for key, value in run.parameters.identity().items():
-        if key not in run.parameters.__fields__:  # what a file that a parameter names holds
+        if key not in run.parameters.__fields__:  # the content of a file that a parameter names
             continue
         there, asked = values_of(stored.get(key)), "auto" if value is None else value
         if asked not in there:
@@ -140,21 +144,21 @@ def difference(run):
 
 
 def values_of(stored):
-    """Return the value of a parameter in a run folder, `Described`, and behind it "auto" where it was taken for that."""
+    """Return a list: the value of a parameter in a run folder, and also "auto" if the value was derived for `auto`."""
     if stored is None:
         return ("nothing",)
     return (stored.value, "auto") if stored.auto else (stored.value,)
 
 
 def take_lock(part):
-    """Return the open file whose lock says that this process is at work in the folder `part`."""
+    """Return an open, locked file, which shows that this process works in the folder `part`."""
     lock = open(part / ".lock", "w")
     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     return lock
 
 
 def is_alive(part):
-    """True if a process still holds the lock of a folder being written."""
+    """True if a process still holds the lock of an unfinished folder."""
     try:
         with open(part / ".lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -166,12 +170,12 @@ def is_alive(part):
 
 
 def hidden(out, kind):
-    """Return the name of this process for a folder beside `out` that is being written ("part"), replaced or removed."""
+    """Return this process's name for a folder beside `out` of the `kind` "part" (unfinished), "old" or "gone"."""
     return out.with_name(f".{out.name}.{kind}-{os.getpid()}")
 
 
 def hidden_ones(out, kind):
-    """Return the folders beside `out` that any process named so."""
+    """Return the folders of that `kind` beside `out`, from all processes."""
     name = re.compile(rf"\.{re.escape(out.name)}\.{kind}-\d+")
     return sorted(path for path in out.parent.iterdir() if name.fullmatch(path.name) and path.is_dir())
 
@@ -183,16 +187,16 @@ def free_name(out, ending):
 
 
 def take_place(path, out, digest):
-    """Rename the complete folder `path` to `out`; an older run of the same parameters gives way, nothing else does.
+    """Rename the complete folder `path` to `out`; it replaces an older run of the same parameters, but nothing else.
 
-    Where the place cannot be taken the run is kept as NAME.complete, and UsageError says so.
+    If the place cannot be taken, the run is kept as NAME.complete, and UsageError says so.
     """
     whole_files.sync_tree(path)
     old = hidden(out, "old")
     try:
         if out.is_dir() and any(out.iterdir()):
             if stored_digest(out) != digest:
-                raise FileExistsError(0, "it was made by someone else meanwhile")
+                raise FileExistsError(0, "another process made it meanwhile")
             os.rename(out, old)
         os.rename(path, out)
     except OSError as error:
@@ -200,12 +204,14 @@ def take_place(path, out, digest):
             os.rename(old, out)
         kept = free_name(out, "complete")
         os.rename(path, kept)
-        raise UsageError(f"{out} cannot be replaced ({error.strerror}); this run is complete in {kept}") from None
+        raise UsageError(
+            f"{out} cannot be replaced ({error.strerror}); this run is complete and kept in {kept}"
+        ) from None
     whole_files.sync(out.parent)
     if old.exists():
         remove(old, out)
 
 
 def remove(folder, out):
-    """Remove a folder beside `out`; what a kill leaves of it is removed by the next call."""
+    """Remove a folder beside `out`; after a kill the next call removes the rest."""
     whole_files.discard(folder, hidden(out, "gone"))

@@ -1,23 +1,23 @@
-"""What runs leave when they end early, and what the next call makes of it: a state machine over folders beside NAME.
+"""Handles the remains of runs that ended early: a table of the folders beside NAME and what the next call does with them.
 
-| on disk | how it came there | what the next call for NAME does |
+| on disk | origin | what the next call for NAME does |
 |---|---|---|
 | `NAME`, complete | the last rename of a good run | says so; redo=1 replaces it |
 | `NAME`, unreadable | damage | refuses it by name; redo=1 keeps it as `NAME.damaged` and runs again |
-| `.NAME.part-PID`, locked | a run at work | refuses |
+| `.NAME.part-PID`, locked | a run is working | refuses |
 | part without rows, items, checkpoint | killed before its first row | removes it |
-| part with a growing `run.h5` | killed at work | gathers all into one `run.h5`, then as the next line |
+| part with an unfinished `run.h5` | killed at work | combines all data into one `run.h5`, then as the next line |
 | part whose `run.h5` is `interrupted` or `failed` | killed while it was kept | keeps it as `NAME.interrupted` |
 | part whose `run.h5` is `complete` | killed between its last row and its name | draws what is missing, renames it `NAME` |
-| `.NAME.old-PID` | redo, killed between its two renames | gives it back its name, or removes it if `NAME` is there |
+| `.NAME.old-PID` | redo, killed between its two renames | renames it `NAME`, or removes it if `NAME` exists |
 | `.NAME.gone-PID` | killed while it was removed | removes it |
-| `NAME.interrupted`, `NAME.failed` | kept on purpose | resume=1 goes on from the furthest of the same parameters |
-| `NAME.failed`, complete | a finished run of its own, by `out=NAME.failed` or renamed | leaves it alone |
+| `NAME.interrupted`, `NAME.failed` | kept on purpose | resume=1 continues the one of the same parameters with most steps |
+| `NAME.failed`, complete | a different, finished run: `out=NAME.failed`, or renamed | does not touch it |
 
-Each step between them is one rename of something whole, so a kill can leave nothing else. A part that was resumed holds a copy
-of what it goes on from: it takes the place of those remains once it is further than they are, and counts for nothing before.
-So the furthest checkpoint is never removed before a further one stands. Remains are checked against the checksums in their
-checkpoint (`checkpoint.py`) before anything is taken from them.
+Each transition is one rename of a complete folder or file, so a kill can leave no other state. A resumed part holds a copy of the
+remains that it continues: it replaces them once it has more steps, and is discarded if it is killed before that. So the
+checkpoint with most steps is never removed before a later one exists. Remains are checked against the checksums in their
+checkpoint (`checkpoint.py`) before anything is copied from them.
 """
 
 import re
@@ -32,15 +32,15 @@ from ..base import whole_files
 from ..base.errors import UsageError, one_line
 from ..parameters import known_formats
 
-ENDED = ("interrupted", "failed", "complete")  # states of a gathered run.h5
+ENDED = ("interrupted", "failed", "complete")  # states of a combined run.h5
 WORK_FILES = ("items", ".lock", checkpoint.DATA, "about.h5")
 
 
-# ---- what killed runs left -------------------------------------------------------------------------------------------
+# ---- remains of killed runs ------------------------------------------------------------------------------------------
 
 
 def settle(run):
-    """Bring all that killed runs left for a `RunFolder` into a lasting state; folders at work stay."""
+    """Settle all remains of killed runs for a `RunFolder`; folders of working runs are not touched."""
     restore_old(run.out)
     for gone in run_place.hidden_ones(run.out, "gone"):
         shutil.rmtree(gone, ignore_errors=True)
@@ -50,7 +50,7 @@ def settle(run):
 
 
 def restore_old(out):
-    """Give the run that a killed redo had moved away its name again; remove it if the new one had taken the place."""
+    """Rename the run that a killed redo had moved away back to `out`, or remove it if the new run is in place."""
     for old in run_place.hidden_ones(out, "old"):
         if out.exists():
             run_place.remove(old, out)
@@ -68,7 +68,7 @@ def settle_part(run, part):
         return
     kept = keep(part, run.out, "failed" if state in ("failed", "complete") else "interrupted")
     if kept:
-        say(run, f"a killed run left data for this folder; they are kept in {kept}")
+        say(run, f"a killed run left data of this run; they are kept in {kept}")
 
 
 def say(run, words):
@@ -77,28 +77,26 @@ def say(run, words):
 
 
 def finish_killed(run, part):
-    """Finish a part that was complete; False after a line that says why it cannot be."""
+    """Finish a part whose data are complete; print the reason and return False if this fails."""
     try:
         digest, study = (run_file.read_attribute(part / run_file.NAME, name) for name in ("digest", "study"))
         formats = formats_of(run_file.parameters_in(part / run_file.NAME))
         draw(part, run.figure if study == run.study else None, formats)
         take_name(part, run.out, digest)
-        say(run, f"a killed run was complete but for its name; it is in {run.out} now")
-    except (
-        Exception
-    ) as error:  # what a study's figure raises is its own; a place that is taken says where the run is kept
+        say(run, f"a killed run was complete except for its name; it is now in {run.out}")
+    except Exception as error:  # a figure may raise any error; the error for a taken place names the folder of the run
         say(run, f"a killed run was complete, but cannot be finished: {type(error).__name__}: {one_line(error, 200)}")
     return not part.exists()
 
 
 def gather(part):
-    """Make the one `run.h5` of what a killed run left in `part`; False if it had measured nothing."""
+    """Combine the data that a killed run left in `part` into one `run.h5`; False if there are no data."""
     series = max([part / "run.h5", part / checkpoint.DATA], key=run_data.rows_in)
     own = [item for item in sorted((part / "items").glob("*.h5")) if is_readable(item)]
     measured = own or run_data.rows_in(series) > 0
     if not measured and not checkpoint.folders(part):
         return False
-    (part / "summary.json").unlink(missing_ok=True)  # of a run that was killed before its data were complete
+    (part / "summary.json").unlink(missing_ok=True)  # it belongs to a run that was killed before its data were complete
     also = [file for file in (part / checkpoint.DATA, part / "about.h5") if is_readable(file)]
     run_data.merge(
         part / "run.h5",
@@ -119,7 +117,7 @@ def is_readable(path):
 
 
 def copy_attributes(sources, file):
-    """Give an open HDF5 file the root attributes of other files, and the state of a run that did not end."""
+    """Copy the root attributes of other files to an open HDF5 file, and set the state of an interrupted run."""
     for path in sources:
         with h5py.File(path, "r") as source:
             file.attrs.update(source.attrs)
@@ -130,9 +128,9 @@ def copy_attributes(sources, file):
 
 
 def draw(part, figure, formats):
-    """Give the folder of a run whose `run.h5` and `summary.json` are complete its figure and its frames in these formats.
+    """Add the figure and the frames in these formats to the folder of a run with complete `run.h5` and `summary.json`.
 
-    All can be made again, so a kill in between costs nothing.
+    All of them can be made again, so a kill meanwhile does no harm.
     """
     if figure is not None:
         figure(part)
@@ -146,9 +144,9 @@ def formats_of(stored):
 
 
 def take_name(part, out, digest):
-    """Give a complete and drawn part its name; a run with resume=1 takes the place of what earlier ones left, too.
+    """Rename a complete part with its figure to `out`; a run with resume=1 also replaces the remains of earlier runs.
 
-    UsageError says where it is kept if the place cannot be taken.
+    UsageError names the folder that keeps it if the place cannot be taken.
     """
     for remains in replaced_by(part, out):
         run_place.remove(remains, out)
@@ -157,9 +155,9 @@ def take_name(part, out, digest):
 
 
 def keep(part, out, ending):
-    """Name a part whose `run.h5` is gathered NAME.`ending` and return that; None if it is no further than what is kept already.
+    """Rename a part with a combined `run.h5` to NAME.`ending` and return that; None if kept remains have as many steps.
 
-    Of runs with resume=1 only the furthest remains stay, so that those which fail again and again leave one folder.
+    Of several runs with resume=1 only the remains with most steps are kept, so repeated failures leave one folder.
     """
     others = {remains: reach(remains) for remains in replaced_by(part, out)}
     own, source = reach(part), attribute(part, checkpoint.SOURCE)
@@ -177,30 +175,30 @@ def keep(part, out, ending):
 
 
 def replaced_by(part, out):
-    """Return the remains of the same parameters of which a run with resume=1, in `part`, takes the place; none for others."""
+    """Return the remains of the same parameters that a run with resume=1, in `part`, replaces; an empty list for other runs."""
     digest = attribute(part, "digest")
     return [remains for remains in remains_of(out) if was_to_resume(part) and attribute(remains, "digest") == digest]
 
 
 def was_to_resume(part):
-    """True if the run whose gathered `run.h5` is in `part` was given resume=1."""
+    """True if the run whose combined `run.h5` is in `part` was started with resume=1."""
     resume = run_file.parameters_in(part / run_file.NAME).get("resume")
     return resume is not None and bool(resume.value)
 
 
 def attribute(folder, name):
-    """Return an attribute of the `run.h5` in a folder as text; None where there is none."""
+    """Return an attribute of the `run.h5` in a folder as text; None if there is none."""
     return run_file.attribute(folder / run_file.NAME, name)
 
 
 def reach(folder):
-    """Return how far the data in a folder go: (step of its checkpoint, rows of series), to be compared."""
+    """Return the progress of the data in a folder, for comparisons: (step of its checkpoint, rows of series)."""
     steps = [int(name.name.partition("-")[2]) for name in checkpoint.folders(folder)]
     return max(steps, default=-1), run_data.rows_in(folder / "run.h5")
 
 
 def clear_work_files(path, keep_checkpoint=False):
-    """Remove from a run's folder what its `run.h5` now holds, the lock, what is half written and, if not kept, checkpoints."""
+    """Remove files that `run.h5` now contains, the lock, unfinished files and, unless kept, checkpoints from a run's folder."""
     unneeded = [path / name for name in WORK_FILES] + [*path.glob("*.tmp"), *path.glob(".*.tmp")]
     for file in unneeded + ([] if keep_checkpoint else list(path.glob("checkpoint-*"))):
         if file.is_dir():
@@ -209,14 +207,14 @@ def clear_work_files(path, keep_checkpoint=False):
             file.unlink(missing_ok=True)
 
 
-# ---- going on --------------------------------------------------------------------------------------------------------
+# ---- resume ----------------------------------------------------------------------------------------------------------
 
 
 def adopt(path, out, digest):
-    """Copy the furthest checkpoint of the same parameters that is whole, with its data, into `path`; return its facts or None.
+    """Copy the latest intact checkpoint of the same parameters, with its data, into `path`; return its facts or None.
 
-    The facts then have the checkpoint's `folder` and the name of the `remains`. Damaged remains are named on stderr where
-    others serve; where none do, UsageError says what is damaged and how to go on.
+    The facts then include the checkpoint's `folder` and the name of the `remains`. Damaged remains are named on stderr if
+    others can be used; if none can, UsageError says what is damaged and how to proceed.
     """
     found, damaged = candidates(out, digest)
     for facts, folder in sorted(found, key=lambda pair: -pair[0]["step"]):
@@ -226,7 +224,7 @@ def adopt(path, out, digest):
             damaged.append((str(error), folder.parent))
         else:
             for words, _ in damaged:
-                print(f"graindrive: {words}; it is passed over", file=sys.stderr)
+                print(f"graindrive: {words}; it is not used", file=sys.stderr)
             return {**facts, "folder": copied, "remains": folder.parent}
     if damaged:
         words, remains = damaged[0]
@@ -235,7 +233,7 @@ def adopt(path, out, digest):
 
 
 def candidates(out, digest):
-    """Return what remains of earlier runs: a list of (facts, folder) of checkpoints of this digest, one of (words, remains)."""
+    """Return two lists on earlier runs: (facts, folder) of checkpoints with this digest, (message, remains) of damaged ones."""
     found, damaged = [], []
     for remains in remains_of(out):
         for folder in checkpoint.folders(remains):
@@ -248,15 +246,15 @@ def candidates(out, digest):
 
 
 def remains_of(out):
-    """Return the folders NAME.interrupted, NAME.failed-2 … beside `out` that hold remains; a finished run may be called so."""
+    """Return the folders NAME.interrupted, NAME.failed-2 … beside `out` that hold remains and no finished run."""
     name = re.compile(re.escape(out.name) + r"\.(interrupted|failed)(-\d+)?")
     named = (path for path in out.parent.iterdir() if name.fullmatch(path.name) and path.is_dir())
     return sorted(path for path in named if not is_finished(path))
 
 
 def is_finished(folder):
-    """True for a run that came to its end.
+    """True for a run that ended successfully.
 
-    Remains whose data are complete are those of a run that was killed while it was drawn; they keep their checkpoint.
+    Remains with complete data come from a run that was killed while its figure was drawn; they still have their checkpoint.
     """
     return attribute(folder, "state") == "complete" and not checkpoint.folders(folder)

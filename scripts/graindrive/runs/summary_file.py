@@ -1,4 +1,4 @@
-"""`summary.json`, written and read: quantity → value, NAME_err = its standard error, NAME_unit = its unit; flat."""
+"""Writes and reads `summary.json`, a flat dict: quantity → value, NAME_err → its standard error, NAME_unit → its unit."""
 
 import json
 from pathlib import Path
@@ -14,7 +14,7 @@ def write(folder, quantities):
 
 
 def read(folder):
-    """Return the dict in a run folder's summary.json; raises OSError or ValueError where there is none."""
+    """Return the dict in a run folder's summary.json; raises OSError or ValueError if there is none."""
     summary = json.loads((Path(folder) / NAME).read_text(encoding="utf-8"))
     if not isinstance(summary, dict):
         raise ValueError("it holds no quantities")
@@ -22,6 +22,6 @@ def read(folder):
 
 
 def parted(summary):
-    """Return (quantities, {quantity: unit}) of what `read` gives."""
+    """Split the dict that `read` returns into (quantities, {quantity: unit})."""
     units = {key.removesuffix("_unit"): value for key, value in summary.items() if key.endswith("_unit")}
     return {key: value for key, value in summary.items() if not key.endswith("_unit")}, units

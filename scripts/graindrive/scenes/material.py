@@ -1,11 +1,11 @@
-"""The grains' material and what time step it bears."""
+"""The grains' materials and their largest stable time steps."""
 
 import math
 from dataclasses import dataclass
 
 from ..lazily import engines
 
-MOST_CONTACTS = 6  # of a disk among disks of about its size
+MOST_CONTACTS = 6  # largest number of contacts of a disk among disks of about its size
 
 
 @dataclass(frozen=True)
@@ -28,17 +28,17 @@ class HertzHistoryMaterial:
     def critical_time_step(self, smallest_radius, overlap):
         """Return the largest stable step [s] of two smallest disks overlapping by `overlap` of their radius.
 
-        Along the normal they move with m_eff. Two disks (I = m R^2/2) slide past each other with a third of it: half of
-        their rolling is free. Hertz stiffness grows with the overlap: given the one where GrainLoop's guard stops a run,
-        the step holds for every contact that it lets pass.
+        Normal motion has the mass m_eff. Tangential motion of two disks (I = m R^2/2) has a third of it, because they can also
+        rotate. Hertz stiffness grows with the overlap: with the overlap at which GrainLoop's guard stops a run, the step is
+        stable for every contact that the guard allows.
         """
         return critical_time_step_of_disks(self, smallest_radius, overlap)
 
     def bed_time_step(self, smallest_radius):
-        """Return the step [s] above which a bed may shake by itself: none is known, for stiffness goes with the overlap.
+        """Return the step [s] above which a bed may become unstable: none is known, because stiffness depends on the overlap.
 
-        A bed's overlaps are far below the one of `critical_time_step`: at a smaller overlap delta the step may be
-        (overlap/delta)^(1/4) times as long, which is more than six contacts take away where delta < overlap/36.
+        A bed's overlaps are far below the overlap of `critical_time_step`: at a smaller overlap delta the step may be
+        (overlap/delta)^(1/4) times as long, which outweighs the effect of six contacts if delta < overlap/36.
         """
         return math.inf
 
@@ -82,7 +82,7 @@ class SpringDashpotMaterial:
         return critical_time_step_of_disks(self, smallest_radius, overlap)
 
     def bed_time_step(self, smallest_radius):
-        """Return the step [s] up to which no bed shakes by itself, whatever its overlaps: that of a disk with six contacts."""
+        """Return the step [s] up to which every bed is stable, whatever its overlaps: that of a disk with six contacts."""
         return critical_time_step_of_disks(self, smallest_radius, 1e-3, MOST_CONTACTS)
 
     def force_between(self, radius, overlap):
@@ -104,10 +104,11 @@ class SpringDashpotMaterial:
 
 
 def critical_time_step_of_disks(material, smallest_radius, overlap, contacts=1):
-    """Return the largest stable step [s] of smallest disks of a material, against the normal and sliding past each other.
+    """Return the largest stable step [s] of smallest disks of a material, for normal and for tangential motion.
 
-    With several `contacts` a disk each contact has that part of the masses. Where all are stable with their parts, so is the
-    bed: 4M - 2 dt C - dt^2 K is a sum over contacts, positive if each of its terms is (Irons, Treharne 1971, with dashpots).
+    With several `contacts` per disk each contact gets an equal part of the masses. If all contacts are stable with their parts,
+    the bed is stable: 4M - 2 dt C - dt^2 K is a sum over contacts, positive if each term is (Irons, Treharne 1971, with
+    dashpots).
     """
     mass = material.density * math.pi * smallest_radius**2 / contacts
     at = material.terms(smallest_radius, overlap)
@@ -146,14 +147,14 @@ class HertzRestitutionSpheres:
         return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius / 2, self.mass(radius) / 2)
 
     def terms_on_a_plane(self, radius, overlap):
-        """Return the same for a sphere on a held plane, or on a held solid that counts as one."""
+        """Return the same for a sphere on a held plane, or on a held solid, which counts as a plane."""
         return engines.terms_of_law(self.LAW, self.given(), overlap * radius, radius, self.mass(radius))
 
     def critical_time_step(self, smallest_radius, overlap):
         """Return the largest stable step [s] of two smallest spheres that overlap by `overlap` of their radius.
 
-        Along the normal they move with m_eff; two spheres (I = 2/5 m R^2) slide past each other with 2/7 of it. A sphere on
-        a plane has a stiffness sqrt(2) times as large for twice the mass, and bears more.
+        Normal motion has the mass m_eff; tangential motion of two spheres (I = 2/5 m R^2) has 2/7 of it. A sphere on a plane
+        has sqrt(2) times the stiffness at twice the mass, so its largest stable step is longer.
         """
         mass = self.mass(smallest_radius) / 2
         at = self.terms(smallest_radius, overlap)

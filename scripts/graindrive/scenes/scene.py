@@ -1,4 +1,4 @@
-"""Scenes in YADE: disks in a plane, a frozen base, a clump of beads, the loop that moves them; spheres in space."""
+"""Builds scenes in YADE: disks in a plane, a frozen base, a clump of beads, the time loop; spheres in space."""
 
 import math
 import os
@@ -13,7 +13,7 @@ from ..lazily import engines
 from ..loops import grain_loop
 from ..base.errors import UsageError
 
-YADES_FILE = "scene.yade.gz"  # the ending tells YADE the format
+YADES_FILE = "scene.yade.gz"  # YADE chooses the format by the ending
 GRAINS_PER_THREAD = 5000  # with fewer, two threads wait for each other as long as they work
 IN_PLANE = "zXY"  # degrees of freedom that a two-dimensional scene blocks
 
@@ -21,7 +21,7 @@ IN_PLANE = "zXY"  # degrees of freedom that a two-dimensional scene blocks
 def start(width, height):
     """Empty YADE's scene and make it periodic in x with period `width`; y has room for `height` and a margin.
 
-    YADE knows cells that are periodic in all directions only: y is made so long that nothing meets its image.
+    YADE only has cells that are periodic in all directions, so y is made so long that no body reaches its own image.
     """
     from yade import O
 
@@ -51,13 +51,13 @@ def add_disks(x, y, radii, density, blocked=IN_PLANE):
 
 
 def row(width, diameter):
-    """Return x of a row of touching disks that joins itself across the periodic side, shape (n,)."""
+    """Return x of a row of touching disks that is continuous across the periodic side, shape (n,)."""
     count = max(1, round(width / diameter))
     return (np.arange(count) + 0.5) * width / count
 
 
 def add_base(width, diameter, density, y=0.0):
-    """Add a row of frozen disks at height `y` that joins itself across the periodic side; return their ids."""
+    """Add a row of frozen disks at height `y` that is continuous across the periodic side; return their ids."""
     x = row(width, diameter)
     return add_disks(x, np.full(len(x), y), np.full(len(x), diameter / 2), density, "xyzXYZ")
 
@@ -75,7 +75,7 @@ def add_wall_clump(width, diameter, density, y, blocked="xyzXYZ"):
 def add_intruder(clump, x, y, blocked="xyzXYZ"):
     """Add a clump of beads (from `engines.clump_of`) with its solid's centroid at (x, y); return the clump's id.
 
-    It gets the mass and inertia that were asked for, whatever its beads weigh.
+    It gets the mass and inertia of `clump`, whatever the mass of its beads is.
     """
     from yade import O
     from yade.minieigenHP import Vector3
@@ -83,7 +83,7 @@ def add_intruder(clump, x, y, blocked="xyzXYZ"):
     beads = [disk(x + bx, y + by, clump.bead_radius, 1.0) for bx, by in clump.beads]
     id_, _ = O.bodies.appendClumped(beads)
     engines.centre_clump(O._sceneObj, id_, Vector3(float(x), float(y), 0))  # YADE takes the mean of the beads
-    O.bodies[id_].aspherical = False  # for YADE computed it from the beads; with one moment of inertia the body is not
+    O.bodies[id_].aspherical = False  # YADE computed this from the beads; one moment of inertia is enough here
     state = O.bodies[id_].state
     state.mass = clump.mass
     state.inertia = Vector3(1, 1, 1) * clump.inertia
@@ -114,7 +114,7 @@ def members(clump):
 
 
 def load_on(body, force):
-    """Let a constant force (x, y, z) act on a body that is free to follow, under either loop."""
+    """Apply a constant force (x, y, z) to a body that is free to move, under either loop."""
     from yade import O
     from yade import wrapper as w
 
@@ -126,7 +126,7 @@ def load_on(body, force):
 
 
 def yade_loop(material, gravity, between=(), damping=0.0):
-    """Put YADE's own loop with our law into O.engines; `between` stands after the contacts, before the integrator."""
+    """Put YADE's own loop with our law into O.engines; `between` are engines between the contacts and the integrator."""
     from yade import O
     from yade import wrapper as w
 
@@ -143,7 +143,7 @@ def yade_loop(material, gravity, between=(), damping=0.0):
 
 
 def height_of(id_):
-    """Return y of a disk; of its clump, if it belongs to one: that is true at every step."""
+    """Return y of a disk, or of its clump if it belongs to one, because the clump's position is up to date at every step."""
     from yade import O
 
     clump = O.bodies[id_].clumpId
@@ -151,11 +151,11 @@ def height_of(id_):
 
 
 def run_on(loop, material, gravity, between=(), precision="double", largest_overlap=0.1, threads=None):
-    """Put the loop of that name into O.engines: "yade" (the reference) or "grain" (fast, the same physics).
+    """Put the named loop into O.engines: "yade" (the reference) or "grain" (fast, the same physics).
 
-    GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius; it takes as many
-    `threads` as YADE was started with, unless they are given, but no more than pay: one for every 5,000 grains or so.
-    Results have the same bits for any number. Raises UsageError where two disks could touch through two periodic images.
+    GrainLoop stops a run in which grains overlap by more than `largest_overlap` of the smaller radius. It uses `threads`, or
+    by default as many as YADE was started with, but no more than useful: about one per 5,000 grains. Results have the same
+    bits for any number of threads. Raises UsageError if two disks could touch through two periodic images.
     """
     from yade import O
 
@@ -174,7 +174,7 @@ def run_on(loop, material, gravity, between=(), precision="double", largest_over
 def require_one_image():
     """Raise UsageError if the cell is so short that its two largest disks could touch through two images at once.
 
-    Either loop meets a pair through its nearest image alone, so the second contact would be lost.
+    Both loops consider only the nearest image of a pair, so the second contact would be lost.
     """
     from yade import O
 
@@ -187,7 +187,7 @@ def require_one_image():
 
 
 def run_as_asked(p, material, gravity, between=()):
-    """Put the loop into O.engines that the parameters of a study ask for."""
+    """Put the loop that the parameters of a study ask for into O.engines."""
     run_on(p.loop, material, gravity, between, p.precision, p.largest_overlap)
 
 
@@ -199,10 +199,10 @@ def fast_loop():
 
 
 def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
-    """Return dt/dt_crit of two smallest grains overlapping by `overlap` radii; UsageError if it is over 1.
+    """Return dt/dt_crit for two smallest grains that overlap by `overlap` radii; UsageError if it is over 1.
 
-    A body of mass `lightest` below a grain's asks for less: frequencies grow as 1/sqrt(mass). So does a grain of several
-    contacts; above the step of its `material.bed_time_step` a bed would warm up by itself without a word, which is refused too.
+    A body whose mass `lightest` is below that of a grain needs a smaller step: frequencies grow as 1/sqrt(mass). So does a
+    grain with several contacts: above `material.bed_time_step` a bed would gain energy without any error, so this is refused too.
     """
     grain = material.density * math.pi * smallest_radius**2
     critical = material.critical_time_step(smallest_radius, overlap) * math.sqrt(min(1, lightest / grain))
@@ -217,18 +217,18 @@ def check_time_step(dt, material, smallest_radius, overlap, lightest=math.inf):
 
 
 def require_bed_bears(dt, most):
-    """UsageError for a time step over that of a grain with several contacts."""
+    """Raise UsageError for a time step above the stable one of a grain with several contacts."""
     if dt > most:
         raise UsageError(
-            f"time step {dt:.3g} is over {most:.3g}, above which a grain with six contacts may swing up: the bed would warm up by"
-            f" itself; lower dt_factor, to {0.99 * most / dt:.2g} times its value or less"
+            f"time step {dt:.3g} is over {most:.3g}, above which a grain with six contacts may be unstable: the bed would gain"
+            f" energy by itself; lower dt_factor, to {0.99 * most / dt:.2g} times its value or less"
         )
 
 
 def save(path):
-    """Write the whole scene, engines and springs included, into one file for `load`: atomic, with checksum and version.
+    """Write the whole scene with engines and springs into one file for `load`, in one step, with checksum and version.
 
-    RuntimeError with the system's reason if it cannot be written; an older file then stays.
+    RuntimeError with the system's reason if it cannot be written; an older file is then kept.
     """
     loop = fast_loop()
     if loop:
@@ -241,15 +241,15 @@ def save(path):
 
 
 def load(path):
-    """Go on from a scene that `save` wrote; GrainLoop to the last bit, YADE's loop to round-off.
+    """Continue from a scene that `save` wrote: GrainLoop with the same bits, YADE's loop to round-off.
 
-    RuntimeError with the reason for a file that is damaged, cut, foreign or of another version.
+    RuntimeError with the reason for a file that is damaged, truncated, of another program or of another version.
     """
     from yade import O
 
     saved = engines.saved_scene(str(path))
     if not saved:
-        raise RuntimeError(f"checkpoint {path} holds no scene of YADE's; build the scene, then use GrainLoop.restore")
+        raise RuntimeError(f"checkpoint {path} holds no YADE scene; build the scene, then use GrainLoop.restore")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / YADES_FILE
         file.write_bytes(saved)
@@ -260,7 +260,7 @@ def load(path):
 
 
 def saved_by_yade():
-    """Return what O.save writes, as bytes: it writes to memory, since it never returns from a disk that is full."""
+    """Return the bytes that O.save writes; it writes to memory here, because on a full disk it never returns."""
     from yade import O
 
     with tempfile.TemporaryDirectory() as folder, os.fdopen(os.memfd_create(YADES_FILE), "rb") as memory:
@@ -292,7 +292,7 @@ def rows_of(ids):
 
 
 def dimensions():
-    """Return 2 for a scene of disks, 3 for one of spheres: GrainLoop's, else as `use_grain_loop` has it; 2 without a loop."""
+    """Return 2 for a scene of disks, 3 for spheres: from GrainLoop, else as in `use_grain_loop`; 2 without a loop."""
     from yade import O
 
     loop = fast_loop()

@@ -1,4 +1,4 @@
-"""Scenes of spheres in YADE: a box periodic in x and y, a base, a lid of heavy grains, a solid, and the loop that moves them."""
+"""Builds scenes of spheres in YADE: a box periodic in x and y, a base, a lid of heavy grains, a solid, and the time loop."""
 
 from types import SimpleNamespace
 
@@ -12,7 +12,7 @@ from ..base.errors import UsageError
 
 
 def start(width, breadth, height):
-    """Empty YADE's scene and make it periodic in x and y; z has room for `height` [m], so long that nothing meets its image."""
+    """Empty YADE's scene and make it periodic in x and y; z is longer than `height` [m], so that no body reaches its image."""
     from yade import O
 
     O.reset()
@@ -21,7 +21,7 @@ def start(width, breadth, height):
 
 
 def lattice(width, breadth, d, z):
-    """Return centres (n, 3) of a square lattice of spheres about d apart at height z that joins itself across the sides."""
+    """Return centres (n, 3) of a square lattice of spheres about d apart at height z, continuous across periodic sides."""
     columns, rows = max(1, round(width / d)), max(1, round(breadth / d))
     i, j = (index.ravel() for index in np.mgrid[0:columns, 0:rows])
     return np.c_[(i + 0.5) * width / columns, (j + 0.5) * breadth / rows, np.full(i.size, float(z))]
@@ -47,7 +47,7 @@ def add_solid(surface, at):
 
 
 def yade_loop(material, gravity, between=()):
-    """Put YADE's own loop for spheres and solids into O.engines; `between` stands after the contacts, before the integrator."""
+    """Put YADE's own loop for spheres and solids into O.engines; `between` are engines before the integrator."""
     from yade import O
     from yade import wrapper as w
 
@@ -65,7 +65,7 @@ def yade_loop(material, gravity, between=()):
 
 
 def run_on_grain_loop(material, gravity, between=(), springs=((), ()), **settings):
-    """Put GrainLoop into O.engines and return it; `springs` are its attributes springs and wallSprings of an earlier scene."""
+    """Put GrainLoop into O.engines and return it; `springs` are the attributes springs and wallSprings of an earlier scene."""
     from yade import O
 
     require_one_image()
@@ -76,7 +76,7 @@ def run_on_grain_loop(material, gravity, between=(), springs=((), ()), **setting
 
 
 def run_on_yade_loop(material, gravity, between=(), springs=((), ())):
-    """Put YADE's own loop into O.engines, with the springs of an earlier scene, whose contacts a step of no time finds."""
+    """Put YADE's own loop into O.engines with the springs of an earlier scene; a step with dt = 0 finds the contacts."""
     from yade import O
 
     require_one_image()
@@ -91,7 +91,7 @@ def run_on_yade_loop(material, gravity, between=(), springs=((), ())):
 
 
 def require_one_image():
-    """UsageError if the box is so short along x or y that two of its largest spheres could touch through two images at once."""
+    """Raise UsageError if the box is so short along x or y that two largest spheres could touch through two images at once."""
     from yade import O
 
     radius = engines.body_table(O._sceneObj)["radius"].max()
@@ -104,7 +104,7 @@ def require_one_image():
 
 
 def halt():
-    """Take all motion from every body; contacts keep their tangential springs."""
+    """Set all velocities and spins to zero; contacts keep their tangential springs."""
     from yade import O
     from yade.minieigenHP import Vector3
 
@@ -116,7 +116,7 @@ def halt():
 
 
 def set_velocity(ids, velocity):
-    """Give bodies one velocity (3,) [m/s], before the first step."""
+    """Give all these bodies the same velocity (3,) [m/s], before the first step."""
     from yade import O
     from yade.minieigenHP import Vector3
 
@@ -125,7 +125,7 @@ def set_velocity(ids, velocity):
 
 
 def load_all(ids, force):
-    """Let a constant force (3,) [N] act on each of some bodies, under either loop."""
+    """Apply a constant force (3,) [N] to each of these bodies, under either loop."""
     from yade import O
     from yade import wrapper as w
 
@@ -138,7 +138,7 @@ def load_all(ids, force):
 
 
 def check_time_step(dt, material, smallest_radius, overlap):
-    """Return dt/dt_crit of two smallest spheres overlapping by `overlap` radii; UsageError if it is over 1."""
+    """Return dt/dt_crit for two smallest spheres that overlap by `overlap` radii; UsageError if it is over 1."""
     critical = material.critical_time_step(smallest_radius, overlap)
     if dt > critical:
         raise UsageError(

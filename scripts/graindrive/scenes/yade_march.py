@@ -1,4 +1,4 @@
-"""YADE's loop as a `March`: it runs in the background, is open to signals, and what its engines throw is heard."""
+"""YADE's loop as a `March`: it runs in the background, reacts to signals, and reports exceptions of its engines."""
 
 import atexit
 import threading
@@ -14,10 +14,10 @@ SCENE = "scene.checkpoint"  # file of a checkpoint
 
 @dataclass
 class YadeMarch:
-    """The scene that stands in YADE, under either loop; `grains` is the number that its rate counts.
+    """The present scene of YADE, under either loop; `grains` is the number of grains for the rate.
 
-    `advance` raises EngineError with what an engine raised, `Interrupted` on a signal, RuntimeError if something else paused
-    the loop.
+    `advance` raises EngineError with the message of an engine's exception, `Interrupted` on a signal, RuntimeError if something
+    else paused the loop.
     """
 
     grains: int = 0
@@ -36,7 +36,7 @@ class YadeMarch:
         return O.iter * O.dt
 
     def advance(self, steps):
-        """Run YADE's loop for so many steps."""
+        """Run YADE's loop for `steps` steps."""
         advance(steps)
 
     def save(self, folder):
@@ -44,14 +44,14 @@ class YadeMarch:
         scene.save(folder / SCENE)
 
     def load(self, folder):
-        """Put the scene of a checkpoint into YADE; RuntimeError with the reason where that cannot be."""
+        """Put the scene of a checkpoint into YADE; RuntimeError with the reason if this is impossible."""
         scene.load(folder / SCENE)
 
 
 def advance(steps):
     """Run YADE's loop for `steps` steps.
 
-    `O.run(n, True)` looks only every 40 ms whether the loop has ended and holds signals back all the while; short
+    `O.run(n, True)` checks only every 40 ms whether the loop has ended, and blocks signals meanwhile; short
     sleeps cost at most 2 % of the block's time and let a signal through at once.
     """
     from yade import O
@@ -76,9 +76,9 @@ def advance(steps):
 
 
 def ask_engines():
-    """Call every engine in this thread, where what the failing one throws is heard: the step was not finished.
+    """Call every engine in this thread, so that the failing one raises its exception here: the step was not finished.
 
-    For a failure so early that nobody was waiting yet. The scene is lost either way; what was measured is kept.
+    This is for a failure so early that the listener was not waiting yet. The scene is lost in any case; measured data are kept.
     """
     from yade import O
 
@@ -88,17 +88,17 @@ def ask_engines():
 
 
 class LoopListener:
-    """Waits in a thread of its own for YADE's loop to end, the only way to learn what an engine threw there.
+    """Waits in a separate thread for the end of YADE's loop, which is the only way to get an engine's exception.
 
-    YADE hands an engine's exception to whoever is inside `O.wait()` when the loop ends, and to nobody afterwards. One
-    wait may span many blocks; an engine that fails before the wait has begun has to be asked again.
+    YADE passes an engine's exception to a call of `O.wait()` that is active when the loop ends, and drops it otherwise. One
+    wait may span many blocks; an engine that fails before the wait has begun must be called again.
     """
 
     def __init__(self):
         self.thread, self.error = None, None
 
     def listen(self):
-        """Start waiting, unless an earlier wait still goes on."""
+        """Start waiting, unless an earlier wait is still active."""
         if self.thread is None or not self.thread.is_alive():
             self.error = None
             self.thread = threading.Thread(target=self._wait, daemon=True)
@@ -118,7 +118,7 @@ class LoopListener:
             self.thread.join(timeout=1)
 
     def raise_what_it_heard(self):
-        """Raise what an engine threw, if that was heard."""
+        """Raise the exception of an engine, if there was one."""
         self.thread.join()
         if self.error is not None:
             raise EngineError(str(self.error)) from None

@@ -1,10 +1,10 @@
-"""Words of the recipes that surfaces are made of, with checked numbers."""
+"""Builds the texts of surfaces' recipes from checked numbers."""
 
 import numpy as np
 
 
 def vector(name, value):
-    """Return three numbers as an array; ValueError that names them if they are none."""
+    """Return three numbers as an array; ValueError with `name` for anything else."""
     try:
         numbers = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
@@ -15,7 +15,7 @@ def vector(name, value):
 
 
 def number(name, value):
-    """Return a number as a float; ValueError that names it if it is none."""
+    """Return a number as a float; ValueError with `name` for anything else."""
     try:
         return float(value)
     except (TypeError, ValueError):
@@ -23,7 +23,7 @@ def number(name, value):
 
 
 def words(kind, *parts):
-    """A recipe: repr gives as many digits as bring the same bits back."""
+    """Return the text of a recipe; repr writes enough digits to restore the same bits."""
     found = [kind]
     for part in parts:
         values = np.atleast_1d(np.asarray(part)).ravel().tolist()

@@ -45,7 +45,7 @@ def _placed(self, at=(0, 0, 0), axis=(0, 0, 1), angle=0.0):
 
 
 def _joined(kind, a, b):
-    """One union of all parts in place of unions of unions: it answers sooner, and knows all edges."""
+    """Make one union of all parts in place of nested unions: it is faster, and has exact distances at all edges."""
     if not isinstance(b, Surface):
         return NotImplemented
     parts = [_parts_of(kind, s.recipe) for s in (a, b)]

@@ -5,10 +5,10 @@
     blade = surfaces.swept_outline([(-0.1, -0.01), (0.1, -0.01), (0.1, 0.01), (-0.1, 0.01)], low=0, high=0.3)
     O.bodies.append(surfaces.body(drum | blade))
 
-A surface answers `distance(points)` [m], > 0 outside the solid, `normal(points)` out of it, and `bounds()`. `a | b`
-is what lies in either, `a & b` in both, `a - b` in a and not in b, `~a` everywhere else. `recipe` is a text from
-which `Surface(recipe)` makes it anew to the last bit; scenes and pickles keep it. Every function raises ValueError
-with the rule, the value and the way out.
+A surface has the methods `distance(points)` [m], > 0 outside the solid, `normal(points)`, pointing outwards, and `bounds()`.
+`a | b` is the union of two solids, `a & b` their intersection, `a - b` the part of a outside b, `~a` the complement. `recipe`
+is a text from which `Surface(recipe)` makes the same surface to the last bit; scenes and pickles store it. Every function
+raises ValueError with the rule, the value and the way out.
 """
 
 import math
@@ -25,7 +25,7 @@ __all__ = [
     "half_space",
     "sampled",
     "swept_outline",
-]  # Surface and surface_kinds are of the engines
+]  # Surface and surface_kinds come from the compiled engines
 
 
 def __getattr__(name):
@@ -36,7 +36,7 @@ def __getattr__(name):
 
 
 def half_space(point, normal):
-    """Everything behind the plane through `point` [m] whose normal, of any length, leads out of the solid."""
+    """The half-space bounded by the plane through `point` [m]; `normal`, of any length, points out of the solid."""
     return engines.Surface(words("half_space", vector("point", point), vector("normal", normal)))
 
 
@@ -52,7 +52,7 @@ def cylinder(centre, axis, radius, length=math.inf):
 
 
 def swept_outline(outline, low=-math.inf, high=math.inf, axis=(0, 0, 1)):
-    """An outline swept along an axis: a prism from `low` to `high` [m] along it, by default along z and without ends.
+    """An outline swept along an axis: a prism from `low` to `high` [m] along it, by default along z and endless.
 
     outline: `graindrive.engines.Outline`, whose point (0, 0) lies on the axis, or its vertices, shape (n, 2) [m]. For
     another axis than z the outline is turned with z by the shortest way (for -z about x); `placed` turns it further.
@@ -80,14 +80,14 @@ def sampled(function, low, high, spacing):
 
     function: takes the nodes, an array of shape (n, 3) [m], in one call and gives n signed distances [m], > 0 outside
     the solid. The surface interpolates them (Keys 1981): with radii of curvature R the error is of the order
-    spacing^3/R^2, at edges spacing.
-    The solid must lie within the grid, and the grid reach beyond it by the radius of the largest sphere: farther out the
-    distance is only known to be more. Spheres larger than the least distance in the grid's outer nodes are refused.
-    For a hollow, such as a vessel's inside, sample what is hollow and take ~.
+    spacing^3/R^2, at edges of the order spacing.
+    The solid must lie within the grid, and the grid must extend beyond it by the radius of the largest sphere: outside the
+    grid only a lower bound of the distance is known. Spheres larger than the least distance at the grid's outer nodes are
+    refused. For the outside of a cavity, such as a vessel around its inside, sample the cavity and take ~.
 
     Raises ValueError for values of another shape, that are not finite, for a solid that reaches the grid's sides, and
-    for a function that is no distance: whose slope near the surface is not 1 within 0.1 at half of the nodes, or
-    above 1.01 anywhere.
+    for a function that is no distance: its slope near the surface differs from 1 by more than 0.1 at half of the nodes, or
+    is above 1.01 anywhere.
     """
     low, high, spacing = vector("low", low), vector("high", high), number("spacing", spacing)
     if not (0 < spacing < math.inf):
@@ -113,7 +113,7 @@ def body(
 ):
     """A YADE body with a solid's shape, to be given to O.bodies.append.
 
-    surface: seen in the body's frame, whose origin lies at position [m], turned by orientation (a Quaternion).
+    surface: given in the body's frame, whose origin lies at position [m] and which is rotated by orientation (a Quaternion).
     material: a FrictMat, or the index or label of one in O.materials. held: True blocks all six degrees of freedom,
     so that only drives move it; a free solid needs its mass [kg] and the three moments of inertia [kg m^2] about the
     frame's axes.
