@@ -54,7 +54,7 @@ SAME_SPHERES, SAME_SMOOTH_SPHERES, SAME_SMOOTH_FLOW_IN_LIGGGHTS = 0.05, 1e-9, 1e
 SAME_ON_YADES_LOOP = 1e-5  # the same law with the same formulas
 WARM_UP = 10  # steps
 FLOWS = (continuum.NAME, drum_newtonian.NAME)
-OWN_SHARE = 6  # GrainLoop's portions of spheres have this many times the peer's steps; otherwise they would be short, and show the cost
+OWN_SHARE = 6  # GrainLoop's portions of spheres have this many times the steps of the peer's; else they are too short to be timed
 # with which O.run begins and ends, 0.3 s for 190,000 bodies
 YADE_SHARE = 100  # YADE's loop runs a hundredth of the steps
 COMPARED = 300  # steps after which energies are compared: soon after, chaos amplifies round-off in dense flows
