@@ -4,6 +4,7 @@ How a run is drawn its study says: one of this checkout, by the name in the run 
 """
 
 import sys
+from pathlib import Path
 
 from ..exports import exports
 from ..base.errors import UsageError
@@ -24,10 +25,10 @@ def main(arguments):
         print(USAGE)
         return 0 if arguments else 2
     try:
-        options = dict(a.split("=", 1) for a in arguments if a.startswith(KEYS))
+        options, paths = sorted_out(arguments)
         frame, filmed = (whole(key, options.get(key, usual)) for key, usual in (("frame", -1), ("animation", 0)))
         formats = known_formats(options.get("export", ""))
-        for path in (a for a in arguments if not a.startswith(KEYS)):
+        for path in paths:
             if set(options) - {"study"} != {"export"}:
                 draw = figure_of(path, options.get("study"))
                 print(f"{path}: drawing figure.png and figure.pdf")
@@ -43,6 +44,26 @@ def main(arguments):
     except (ValueError, RunError, UsageError) as error:
         print(f"graindrive.postproc: error: {error}", file=sys.stderr)
     return 2
+
+
+def sorted_out(arguments):
+    """Return the keys with their values, and the run folders, of which none may be missing before the first is drawn."""
+    options, paths = {}, []
+    for argument in arguments:
+        key, equals, value = argument.partition("=")
+        if f"{key}{equals}" in KEYS:
+            if key in options:
+                raise UsageError(f"{key} is given twice: {key}={options[key]} and {argument}; keep one")
+            options[key] = value
+        elif key.isidentifier() and equals and not Path(argument).exists():
+            raise UsageError(f"there is no key {key!r}; allowed: {' '.join(known[:-1] for known in KEYS)}")
+        else:
+            paths.append(argument)
+    if not paths:
+        raise UsageError("no run folder is given; OUT is the folder of a run, which holds run.h5")
+    for path in paths:
+        Run(path)
+    return options, paths
 
 
 def whole(key, text):

@@ -132,12 +132,32 @@ def test_command_redraws(run_folder, capsys):
 
 
 @pytest.mark.parametrize(
-    "extra, words", [(["frame=x"], "whole number"), (["frame=9"], "no frame 9"), (["/nowhere"], "not a run folder")]
+    "extra, words",
+    [
+        (["frame=x"], "whole number"),
+        (["frame=9"], "no frame 9"),
+        (["/nowhere"], "not a run folder"),
+        (["anmation=1"], "there is no key 'anmation'; allowed: frame animation export study"),
+        (["frame=0", "frame=1"], "frame is given twice: frame=0 and frame=1; keep one"),
+    ],
 )
 def test_command_mistakes_are_one_line_and_exit_2(run_folder, extra, words, capsys):
     assert command.main([str(run_folder), *extra]) == 2
     err = capsys.readouterr().err
     assert words in err and err.count("\n") == 1
+    if "frame=9" not in extra:
+        assert not (run_folder / "figure.png").exists(), "nothing is drawn before all is read"
+
+
+def test_command_without_a_folder_says_so(capsys):
+    assert command.main(["export=xyz"]) == 2
+    assert "no run folder is given" in capsys.readouterr().err
+
+
+def test_command_takes_a_folder_whose_name_holds_a_key(run_folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run_folder.rename(tmp_path / "seed=2")
+    assert command.main(["seed=2", "frame=0"]) == 0 and (tmp_path / "seed=2/figure.png").exists()
 
 
 def test_command_names_the_studies_it_can_draw(tmp_path, capsys):
