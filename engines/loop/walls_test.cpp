@@ -267,7 +267,7 @@ TEST(Walls, refuses_what_cannot_be_and_says_why)
 		return complaint([&] { loop.set_wall(w); });
 	};
 	EXPECT_TRUE(mentions(refusal(wall(Side::x_low, 0)), "wall x_low: the box must not be periodic across it"));
-	EXPECT_TRUE(mentions(refusal(wall(Side::y_low, 50)), "wall y_low: must lie on its side"));
+	EXPECT_TRUE(mentions(refusal(wall(Side::y_low, 50)), "wall y_low: must lie on its own side of the opposite wall"));
 	Wall<2> light = pressed_lid(1);
 	light.mass = 0;
 	EXPECT_TRUE(mentions(refusal(light), "needs a positive mass [kg], got 0"));
