@@ -8,6 +8,7 @@ from matplotlib.transforms import Bbox
 PLACES = ("upper right", "upper left", "lower right", "lower left", "center right", "center left")
 PLACES += ("upper center", "lower center")
 STEP, MOST = 0.04, 0.6  # of its height, by which a panel grows at a time, and at most
+WIDE = 0.6  # of a figure: a panel that is wider stands alone in its row
 PAD = 2.0  # pixels around a legend that stay free as well
 
 
@@ -63,10 +64,15 @@ def legend_fits(axes, share):
 
 
 def put_beside(axes):
-    """Put the legend to the right of its panel."""
+    """Put the legend to the right of its panel; below it where the panel is as wide as its figure and would lose half of that."""
     legend = axes.get_legend()
-    legend._loc = legend.codes["upper left"]
-    legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+    if axes.get_window_extent().width > WIDE * axes.figure.bbox.width:
+        low = axes.get_tightbbox(axes.figure.canvas.get_renderer()).y0 - PAD  # below the labels
+        legend._loc = legend.codes["upper center"]
+        legend.set_bbox_to_anchor((0.5, axes.transAxes.inverted().transform((0, low))[1]), transform=axes.transAxes)
+    else:
+        legend._loc = legend.codes["upper left"]
+        legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
     legend.set_in_layout(True)
 
 
