@@ -380,7 +380,7 @@ def test_a_damaged_finished_run_is_named_and_made_again_with_redo(place, file):
     place.run()
     target = place.path / "a" / file
     target.write_bytes(target.read_bytes()[:-20])
-    with pytest.raises(UsageError, match=f"holds a damaged run: .*{file} cannot be read .*redo=1 makes it again"):
+    with pytest.raises(UsageError, match=f"holds a damaged run: .*{file} cannot be read .*redo=1 makes the run again"):
         place.run()
     place.run(redo=True)
     assert place.names() == ["a", "a.damaged"] and place.rows() == WHOLE
