@@ -222,8 +222,8 @@ DAMAGE = {
     "cut series": (cut_series, "run.h5 holds 3 of the 4 rows that its checkpoint needs"),
     "other series": (other_series, "run.h5 holds other series than its checkpoint needs"),
     "other frame": (other_frame, "run.h5 holds another frames/0001 than its checkpoint needs"),
-    "half a file": (half_series, "run.h5 holds 0 rows of the 4"),
-    "no series": (lambda place: (place.path / "a.interrupted/run.h5").unlink(), "run.h5 holds 0 rows of the 4"),
+    "half a file": (half_series, "run.h5 holds 0 of the 4 rows"),
+    "no series": (lambda place: (place.path / "a.interrupted/run.h5").unlink(), "run.h5 holds 0 of the 4 rows"),
 }
 
 
