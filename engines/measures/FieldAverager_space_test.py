@@ -108,7 +108,7 @@ def test_shapes_axes_and_names():
             assert array.shape == (2, *shape, *(3,) * rank), name
             assert np.isnan(array[1]).all() and not np.isnan(array[0]).any()
         if along:
-            with pytest.raises(ValueError, match=f"no points along {along}; .* its axes are {fields.axes}"):
+            with pytest.raises(ValueError, match=f"no points along {along}; its axes are {fields.axes}"):
                 getattr(fields, along)
         with pytest.raises(ValueError, match="areaFraction needs dimensions=2; in three dimensions read solidFraction"):
             fields.areaFraction

@@ -156,11 +156,11 @@ def test_no_combination_of_values_escapes_the_one_line_answer(study):
         (
             "wiggle",
             ["largest_overlap=1e-20"],
-            "bear .* at largest_overlap=1e-20 R; lower height or lid_pressure, or raise",
+            "can carry only .* at largest_overlap=1e-20 R; lower height or lid_pressure, or raise",
         ),
         ("wiggle", ["height=1e308"], "height=1e308: the size"),
         ("wiggle", ["height=1e20"], "grains, more than 10000000; lower width or height"),
-        ("wiggle", ["lid_pressure=1e9"], "weighs 1e[+]09 rho d g, but grains bear"),
+        ("wiggle", ["lid_pressure=1e9"], "weighs 1e[+]09 rho d g, but grains can carry only"),
         ("wiggle", ["intruder_mass=1e9"], "lower intruder_mass"),
         ("wiggle", ["lid_pressure=1e-6"], "critical .* of a body of mass 1e-06; lower dt_factor"),
         ("wiggle", ["bead_diameter=1e-5"], "give larger beads"),

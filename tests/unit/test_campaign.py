@@ -163,7 +163,7 @@ def test_a_bad_file_is_refused_with_the_place_the_value_and_the_way_out(plan, ch
     [
         ("magnus", "travel: [60, 300]", "travel=300 d is longer than the channel"),
         ("magnus", "width: [60, 60.5], travel: 40", "width must be a whole number of wall disks, got 60.5; round it"),
-        ("wiggle", "lid_pressure: [auto, 1e6]", "weighs 1e[+]06 rho d g, but grains bear"),
+        ("wiggle", "lid_pressure: [auto, 1e6]", "weighs 1e[+]06 rho d g, but grains can carry only"),
         ("wiggle", "amplitude: [1, 60]", "width=120"),
         ("wiggle", "period: [4, 1e-9]", "period=1e-09"),
     ],

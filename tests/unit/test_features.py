@@ -90,4 +90,4 @@ def test_the_command_prints_features_as_json_and_refuses_another_scene(monkeypat
     assert json.loads(capsys.readouterr().out) == made
     with pytest.raises(SystemExit) as ending:
         benchmark.main(["--features", "--scene", "bed10k"])
-    assert ending.value.code == 2 and "leave --scene bed10k away" in capsys.readouterr().err
+    assert ending.value.code == 2 and "leave --scene bed10k out" in capsys.readouterr().err
