@@ -20,9 +20,10 @@ from ..commands.command_line import parse
 from ..base.errors import UsageError, one_line
 from ..commands.naming import readable
 from ..commands.parameter_values import argument, nearest
+from ..commands.started import study_file
 from ..parameters import StudyParameters
 from ..base.plain_yaml import shortened
-from ..study import house, loaded
+from ..study import loaded
 from .plan_file import read_plan_file
 
 OWN_KEYS = {  # keys of a study that only the campaign sets, with the reason
@@ -83,16 +84,11 @@ def named_in_house(path):
 
 def find_study(path, name):
     """Return the file of the study: below studies/ of this checkout, or a .py file named relative to the campaign's."""
-    if name.endswith(".py"):
-        file = path.parent / name
-        if not file.is_file():
-            raise UsageError(f"{path}: study={one_line(name)}: there is no file {file}")
-        return file.resolve()
-    known = house()
-    if name not in known:
-        hint = nearest(name, known, "did you mean ", "? ")
-        raise UsageError(f"{path}: there is no study '{one_line(name)}'; {hint}there are: {' '.join(known)}")
-    return known[name]
+    try:
+        with contextlib.chdir(path.parent):
+            return study_file(name)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
 
 
 def loaded_for(path, study_file):
