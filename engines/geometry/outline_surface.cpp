@@ -1,4 +1,4 @@
-/// The nearest edge or corner of a polygon by branch and bound in a tree of boxes.
+/// Finds the nearest edge or corner of a polygon by branch and bound in a tree of boxes.
 #include "engines/geometry/outline_surface.hpp"
 
 #include "engines/geometry/refuse.hpp"

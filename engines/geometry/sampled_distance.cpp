@@ -1,4 +1,4 @@
-/// Cubic interpolation, the checks of samples, and results for points outside the grid.
+/// Interpolates sampled distances, checks samples, and gives results for points outside the grid.
 #include "engines/geometry/sampled_distance.hpp"
 
 #include "engines/geometry/refuse.hpp"
@@ -7,7 +7,7 @@ namespace graindrive::geometry {
 namespace {
 
 constexpr std::size_t most_nodes = std::size_t(1) << 31;
-constexpr double steepest = 1.01;  // difference of neighbours over their spacing [-]
+constexpr double steepest = 1.01;  // largest allowed difference of two neighbours over their spacing [-]
 
 template <int D>
 std::string text(const Vec<D>& v)
@@ -108,12 +108,13 @@ void SampledDistance<D>::check_slopes() const
 	}
 }
 
-/// The solid's box and the margin. A point of the solid has a node within half a cell's diagonal, whose distance is no more.
+/// Finds the solid's box and the smallest distance on the grid's border. Each point of the solid has a node within half a
+/// diagonal of a cell, and the distance at this node is at most that half diagonal.
 template <int D>
 void SampledDistance<D>::survey()
 {
 	const double half_diagonal = norm(grid_.spacing) / 2;
-	std::swap(bounds_.low, bounds_.high);  // nothing yet
+	std::swap(bounds_.low, bounds_.high);  // an empty box
 	for (std::size_t node = 0; node < distances_.size(); ++node) {
 		const Index index = index_of(node);
 		const Vec<D> at = grid_.node(index);
@@ -127,7 +128,8 @@ void SampledDistance<D>::survey()
 	if (margin_ <= 0) bounds_ = {};
 }
 
-/// Keys' kernel. In the outermost cells a node is missing: f(-1) = 3 f(0) - 3 f(1) + f(2), which keeps the order (his eq. (19)).
+/// Weights of Keys' kernel. For the node that is missing in the outermost cells f(-1) = 3 f(0) - 3 f(1) + f(2) is used, which
+/// keeps the order of the error (Keys' eq. (19)).
 template <int D>
 typename SampledDistance<D>::Weights SampledDistance<D>::weights(int axis, double at) const
 {

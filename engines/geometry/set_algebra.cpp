@@ -1,4 +1,5 @@
-/// Decides which distances follow directly from the parts, and which need the search for an edge.
+/// Distances from combined solids: most follow directly from the parts, the others need a search for the nearest point on an
+/// edge.
 #include "engines/geometry/set_algebra.hpp"
 
 #include "engines/geometry/edge_search.hpp"
@@ -7,7 +8,7 @@
 namespace graindrive::geometry {
 namespace {
 
-/// The result outside an intersection if the nearest point is on an edge or corner; `bound` if none is found.
+/// The nearest point of an intersection if it lies on an edge or corner; `bound` if none is found.
 template <int D>
 Nearest<D> off_the_edge(const Parts<D>& parts, const Vec<D>& p, const Nearest<D>& bound)
 {

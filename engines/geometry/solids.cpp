@@ -1,4 +1,4 @@
-/// Closed forms, and what happens at centres and edges.
+/// Distances from simple solids in closed form, with a defined normal at centres and edges.
 #include "engines/geometry/solids.hpp"
 
 #include "engines/geometry/refuse.hpp"

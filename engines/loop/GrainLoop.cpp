@@ -1,4 +1,4 @@
-/// GrainLoop: makes the running loop of YADE's bodies and steps it.
+/// GrainLoop: builds the running loop from YADE's bodies and steps it.
 #include "engines/loop/GrainLoop.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ loop::ContactLaw GrainLoop::contact_law() const
 	return std::visit(made, laws::law_named(law));
 }
 
-/// The attribute of that name.
+/// The value of the attribute with that name.
 Real GrainLoop::number(const std::string& name) const
 {
 	const Real* found = nullptr;
@@ -59,7 +59,7 @@ void GrainLoop::build()
 	meet_engines();
 	mirror_ = loop::mirror_of(*this);
 	read_from_ = scene;
-	if (forces_reset_at < 0) forces_reset_at = scene->forces.syncCount;  // YADE's last step may have left its forces there
+	if (forces_reset_at < 0) forces_reset_at = scene->forces.syncCount;  // YADE's last step may have left forces
 	note_what_was_built();
 }
 
@@ -92,12 +92,13 @@ GrainLoop::Turn GrainLoop::take_turn() const
 {
 	Turn turn(busy_, std::try_to_lock);
 	if (turn) return turn;
-	const seam::WithoutPython released;  // a step that ends may need it
+	const seam::WithoutPython released;  // the step under way may need Python's lock to end
 	turn.lock();
 	return turn;
 }
 
-/// YADE's O.run(..., True) loses the error of a step that fails before it has begun to wait for it; it waits without Python's lock.
+/// O.run(..., True) of YADE waits for the run without Python's lock, and loses the error of a step that fails before this wait
+/// has begun. A failed step therefore waits for Python's lock, which is free once that wait has begun.
 void GrainLoop::action()
 {
 	try {

@@ -1,4 +1,5 @@
-/// One file for a scene that runs on GrainLoop: the loop, YADE's bodies, drives and measures, to the last bit.
+/// Writes a scene that runs on GrainLoop into one file, and reads it: the loop, YADE's bodies, drives and measures, to the last
+/// bit.
 #include <sstream>
 
 #include "engines/loop/GrainLoop.hpp"
@@ -14,7 +15,7 @@ namespace {
 struct BodyRecord {
 	int exists = 0, clump = -1;
 	Real radius = 0, mass = 0;
-	std::uint64_t surface = 0;  // of a solid: a checksum of its recipe
+	std::uint64_t surface = 0;  // checksum of a solid's recipe
 	unsigned blocked = 0;
 	Real position[3] = {}, orientation[4] = {}, velocity[3] = {}, spin[3] = {}, momentum[3] = {};
 };
@@ -43,7 +44,7 @@ void put(const BodyRecord& r, yade::State& s)
 	std::copy(r.orientation, r.orientation + 4, s.ori.coeffs().data());
 }
 
-/// O.cell where it deforms.
+/// O.cell of a scene whose cell deforms.
 struct CellRecord {
 	int deforms = 0, homo_deform = 0, gradient_changed = 0;
 	Real numbers[7 * 9] = {};
@@ -74,7 +75,7 @@ void put(const CellRecord& r, yade::Cell& cell)
 	each_matrix(cell, [&](auto& matrix) { std::copy(from, from + 9, matrix.data()), from += 9; });
 }
 
-/// An engine of O.engines; `attributes` and `state` of ours only.
+/// An engine of O.engines; `attributes` and `state` are filled for Graindrive's engines only.
 struct EngineRecord {
 	std::string name, attributes, state;
 
@@ -99,7 +100,7 @@ std::string list(const std::vector<EngineRecord>& engines)
 	return "[" + names + "]";
 }
 
-/// All that a file holds beside the loop. What O.save wrote comes first: it is read alone.
+/// All that a file holds beside the loop. The scene that O.save wrote comes first, because it can be read without the rest.
 struct Surroundings {
 	std::string saved_scene;
 	loop::YadeBodies map;
@@ -181,7 +182,8 @@ std::vector<std::pair<std::string, std::string>> physics(GrainLoop& loop)
 	return all;
 }
 
-/// Periods of a cell that deforms follow it.
+/// Why the loop's settings in the file do not fit those of the scene; empty if they do. The periods of a cell that deforms follow
+/// the cell, so they are not compared.
 std::string misfit(GrainLoop& saved, GrainLoop& here, bool periods_follow)
 {
 	const auto before = physics(saved), now = physics(here);

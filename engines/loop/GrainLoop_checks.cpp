@@ -53,7 +53,8 @@ void GrainLoop::check() const
 	require(springs.size() % of_a_spring == 0, (std::string("GrainLoop.springs must hold ") + so_many).c_str(), springs.size());
 }
 
-/// What laws are given, whatever the law in use; of several rules for one number that of the law in use holds.
+/// Checks the constants of all laws, also of those not in use. Where two laws have different rules for one number, the rule of
+/// the law in use holds.
 void GrainLoop::check_material() const
 {
 	std::set<std::string> checked;
@@ -67,7 +68,8 @@ void GrainLoop::check_material() const
 	laws::require(laws::friction_coefficient, friction, "GrainLoop.friction");
 }
 
-/// A cell that is long on purpose leaves an axis free; one that repeats must do so with YADE's own length.
+/// A period of 0 means that the axis does not repeat, however long YADE's cell is; any other period must equal the length of
+/// YADE's cell.
 void GrainLoop::require_periods() const
 {
 	if (!scene->isPeriodic) return;

@@ -1,4 +1,4 @@
-/// Who else may read or change bodies: GrainLoop writes all of them for those who may.
+/// Finds the engines that may read or change YADE's bodies; GrainLoop writes all bodies before such an engine acts.
 #include <algorithm>
 
 #include "engines/loop/GrainLoop.hpp"
@@ -15,7 +15,8 @@ bool is_rival(const std::string& name)
 
 }  // namespace
 
-/// Looks at O.engines where it has changed: two integrators would move everything twice, and what an unknown engine needs is unknown.
+/// Checks O.engines if it has changed. A second integrator is refused because it would move everything twice; an engine of an
+/// unknown class is refused because it may read interactions, which GrainLoop does not keep.
 void GrainLoop::meet_engines()
 {
 	std::vector<const yade::Engine*> here;
@@ -48,7 +49,7 @@ void GrainLoop::meet_engines()
 	met_engines_ = here, met_dead_ = dead;
 }
 
-/// After a step: true if other code may read bodies before the next step, so that they must be up to date.
+/// True if other code may read bodies before the next step, so that they must be up to date at the end of this one.
 bool GrainLoop::someone_may_look() const
 {
 	if (last_step_of_run() || (syncEvery > 0 && (scene->iter + 1) % syncEvery == 0)) return true;

@@ -1,4 +1,4 @@
-/// Settings of GrainLoop that are changed while it runs, the cell, and walls and loads kept as plain numbers for O.save.
+/// Changes of settings and of the cell while GrainLoop runs; walls and loads as lists of numbers, which O.save can write.
 #include <cmath>
 
 #include "engines/loop/GrainLoop.hpp"
@@ -13,14 +13,14 @@ constexpr std::size_t numbers_per_wall = 11;
 
 void append(std::vector<Real>& numbers, const loop::Wall<3>& w)
 {
-	const Real limit = std::isfinite(w.speed_limit) ? w.speed_limit : 0;  // archives hold no infinity
+	const Real limit = std::isfinite(w.speed_limit) ? w.speed_limit : 0;  // 0: no limit, since archives cannot hold infinity
 	numbers.insert(numbers.end(), { Real(int(w.side)), w.position, w.velocity, w.slide[0], w.slide[1], w.slide[2],
 									  Real(w.pressed), w.pressure, w.mass, w.damping, limit });
 }
 
 }  // namespace
 
-/// Called by the property that was set. What the loop keeps for O.save cannot be set under its feet.
+/// Called when an attribute was set. Attributes that the running loop itself writes for O.save cannot be set while it runs.
 void GrainLoop::assigned(const std::string& name)
 {
 	for (const char* kept : kept_by_the_loop)
@@ -32,8 +32,8 @@ void GrainLoop::assigned(const std::string& name)
 	settings_changed_ = true;
 }
 
-/// Applies settings that Python changed: settings of the kernels are changed in the running loop; settings that decide which grains
-/// are bodies need a new reading of the scene.
+/// Applies settings that Python changed: settings of the kernels are changed in the running loop; settings that decide which
+/// grains are bodies need a new reading of the scene.
 void GrainLoop::hear_settings()
 {
 	if (!settings_changed_) return;
@@ -48,10 +48,11 @@ void GrainLoop::hear_settings()
 	}
 	mirror_->change_settings();
 	mirror_->bring_loads();
-	met_engines_.clear();  // `trusted` may be another
+	met_engines_.clear();  // `trusted` may have changed
 }
 
-/// The box may be put elsewhere or deform; the loop of disks follows (yade_cell.hpp), and its periods are those of the cell.
+/// Checks a cell that has moved or deformed. The loop over disks follows it (yade_cell.hpp), with the cell's length in y as its
+/// period.
 void GrainLoop::require_cell()
 {
 	if (!scene->isPeriodic) return;
@@ -63,7 +64,7 @@ void GrainLoop::require_cell()
 	require_periods();
 }
 
-/// Takes tilt, height and velocity of O.cell over where YADE has deformed it since.
+/// Takes over tilt, height and velocity of O.cell if YADE has deformed it since the last step.
 void GrainLoop::follow_cell()
 {
 	if (!scene->isPeriodic || !loop::deforms(*scene->cell)) return;
@@ -141,7 +142,7 @@ void GrainLoop::set_load(int id, const Vector3r& force)
 	if (id < 0 || !scene->bodies->exists(id))
 		throw std::invalid_argument(
 			"GrainLoop.setLoad: body " + std::to_string(id) + " is not in O.bodies; give the id that O.bodies.append returned");
-	mirror_->body_index(id);  // a free grain becomes a body
+	mirror_->body_index(id);  // makes a body of a free grain: only bodies take loads
 	if (mirror_->map.body_of_id[id] < 0)
 		throw std::invalid_argument(
 			"GrainLoop.setLoad: body " + std::to_string(id) + " does not move; free one of its directions first");

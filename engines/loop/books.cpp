@@ -1,4 +1,4 @@
-/// Contacts, motions and works of a step, as the ledger books them.
+/// Collects the contacts, motions and works of a step for the energy ledger.
 #include "engines/loop/books.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ bool turns_exactly(const RigidBody<3>& body)
 double axis_of_spin(double spin, int) { return spin; }
 double axis_of_spin(const Vec<3>& spin, int k) { return spin[k]; }
 
-/// Of a body that turns about one axis, or is a ball.
+/// Moment of inertia about an axis of the world, of a body that turns about one axis only or whose three moments are equal.
 double moment_about(const RigidBody<2>& body, int) { return body.inertia; }
 double moment_about(const RigidBody<3>& body, int k)
 {
@@ -35,8 +35,9 @@ double moment_about(const RigidBody<3>& body, int k)
 
 }  // namespace
 
-/// YADE's own laws lengthen what they remember by another velocity than the one that their force works on, and what damping takes depends
-/// on the sum of all forces: neither has entries that are exact. Nor has a body that tumbles, whose spin changes without a torque.
+/// Refuses scenes for which the ledger has no exact entries. YADE's own laws increase their tangential force with another
+/// velocity than the one at which this force does work; the loss by non-viscous damping depends on the sum of all forces; the
+/// spin of a tumbling body changes without a torque.
 template <int D>
 void require_explicable(const Scene<D>& scene)
 {
@@ -56,7 +57,7 @@ void require_explicable(const Scene<D>& scene)
 				b, "; switch trackEnergy off, or block two of its rotations"));
 }
 
-/// Velocity and surface speed of a grain after the step, where it was at the step.
+/// Velocity and surface speed of a grain after the step, at the place that it had at the step.
 template <int D>
 SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
 {
@@ -68,7 +69,8 @@ SurfaceMotion<D> Books<D>::motion_after(std::uint32_t at) const
 	return { body.velocity + cross(body.spin, arm), body.spin * row.radius };
 }
 
-/// A contact at a step: `before` is the input of the law, `after` belongs to the half step after it.
+/// Enters a contact. `before` is the relative velocity half a step earlier, which the law received; `after` is that half a step
+/// later.
 template <int D>
 void Books<D>::meet(std::uint64_t key, const Placement<D>& at, double radius, double mass, const RelativeMotion<D>& before,
 	const RelativeMotion<D>& after, const Tangent<D>& slip, const Vec<D>& image_before, const Vec<D>& image_after)
@@ -81,7 +83,7 @@ template <int D>
 void Books<D>::meet_pairs()
 {
 	for (auto [i, j, slip] : selected) {
-		if constexpr (D == 3)  // a search may let the two change places; what the ledger remembers is a vector of one of them
+		if constexpr (D == 3)  // a search may swap i and j, but the ledger remembers vectors that act on the first
 			if (state.index_of[i] > state.index_of[j]) std::swap(i, j), slip = -slip;
 		const Row<D>&a = rows[i], &b = rows[j];
 		const Placement<D> at = placement<D>(a, b, state.scene.cell);
@@ -150,7 +152,7 @@ void Books<D>::weigh(LedgerMotion& motion, double mass, const Vec<D>& place, con
 	for (int k = 0; k < D; ++k) {
 		if (!along[k]) continue;
 		const double g = state.scene.gravity[k];
-		if (state.scene.cell.periodic[k])  // there is no height: what falls is added up
+		if (state.scene.cell.periodic[k])  // a height is not defined: the work of gravity is added up instead
 			motion.falling.before -= mass * g * v[k] * half, motion.falling.after -= mass * g * v_after[k] * half;
 		else
 			motion.potential -= mass * g * place[k];

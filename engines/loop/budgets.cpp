@@ -1,4 +1,4 @@
-/// Speeds, expectations and limits of the parties.
+/// How far the parties (blocks of grains, and bodies) may travel before pairs are selected anew.
 #include "engines/loop/budgets.hpp"
 
 #include <algorithm>
@@ -10,16 +10,16 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double fewest_steps = 20, most_steps = 200;  // between two selections, aimed at where grains are fast
-constexpr double smallest_part = 0.001;                // budget [d]
-constexpr double horizon_in_paces = 1.25;              // how long a selection may last, should budgets not be used up
-constexpr double drifts_share_of_skin = 0.6;           // two budgets take at most twice 0.15 of it
+constexpr double fewest_steps = 20, most_steps = 200;  // aimed at between two selections of pairs, if grains are fast
+constexpr double smallest_part = 0.001;                // smallest budget [d]
+constexpr double horizon_in_paces = 1.25;              // longest time between selections, over the pace
+constexpr double drifts_share_of_skin = 0.6;           // share of the skin for drifts; two budgets use up to twice 0.15 of it
 
-/// Of the skin.
+/// Largest budget, as a fraction of the skin.
 template <int D>
 constexpr double largest_part = D == 2 ? 0.25 : 0.15;
 
-/// s, of looking at a candidate, over p, of computing a pair (measured).
+/// Cost s of testing a candidate over cost p of computing a pair (measured; see choose_pace).
 template <int D>
 constexpr double selecting_cost = D == 2 ? 6 : 3;
 
@@ -38,8 +38,8 @@ double Budgets<D>::body_speed(std::size_t b) const
 	return length(body.velocity - drift_of(state.n_blocks() + b)) + length(body.spin) * state.reach[b];
 }
 
-/// Somewhat longer than the pace, but so short that the fastest drift exceeds the slowest by at most one diameter: the cells in which
-/// displacements are compared must contain all grains that may touch until then.
+/// Sets the longest time until the next selection: somewhat longer than the pace, but so short that two drifts part by one
+/// diameter at most, because the cells in which displacements are compared must contain all grains that may touch until then.
 template <int D>
 void Budgets<D>::choose_horizon()
 {
@@ -49,7 +49,8 @@ void Budgets<D>::choose_horizon()
 	state.horizon = std::ceil(steps) * state.scene.dt;
 }
 
-/// A search finds pairs nearer than the skin: until the horizon no two may come nearer by more.
+/// Shortens the horizon so that no two grains approach by more than the skin until then: a search finds only pairs nearer than
+/// the skin.
 template <int D>
 void Budgets<D>::keep_horizon_within_skin()
 {
@@ -58,7 +59,7 @@ void Budgets<D>::keep_horizon_within_skin()
 	state.horizon = std::min(state.horizon, steps * state.scene.dt);
 }
 
-/// How much nearer the drifts of two parties bring them in a step, at most [m].
+/// Largest approach of two parties in a step by the difference of their drifts [m].
 template <int D>
 double Budgets<D>::gain_per_step() const
 {
@@ -130,7 +131,7 @@ void Budgets<D>::measure(int rank)
 	}
 }
 
-/// By its own speed or that of a faster neighbour, which may push it.
+/// Gives each party a budget by its own speed or by that of a faster neighbour, which may push it.
 template <int D>
 void Budgets<D>::allow_travel()
 {
@@ -151,12 +152,13 @@ void Budgets<D>::allow_travel()
 			std::clamp(length(state.flow.image_velocity) * state.scene.dt * state.pace, least, std::max(least, most));
 }
 
-/// Sets how many steps to aim at between selections. A pair that is selected and does not touch costs at every step, a selection once:
+/// Sets how many steps to aim at between selections. A selected pair that does not touch costs time at every step, a selection
+/// costs once:
 ///
 ///   cost per step = p (N_0 + e n) + s N_candidates / n,  least for n = sqrt(s N_candidates / (p e)),
 ///
-/// where e is how many more are selected for each step that budgets are made for: known from those that half the budgets would
-/// select. Only the speed depends on it, no bit of a result.
+/// where e is the number of additional pairs per step between selections, estimated from the number that half the budgets would
+/// select. The pace changes the speed only, no bit of a result.
 template <int D>
 void Budgets<D>::choose_pace(const PairCounts& counts, std::size_t candidates)
 {
@@ -164,7 +166,7 @@ void Budgets<D>::choose_pace(const PairCounts& counts, std::size_t candidates)
 	state.pace = std::clamp(std::sqrt(selecting_cost<D> * candidates / more_per_step), fewest_steps, most_steps);
 }
 
-/// In the plane each of two grains may have moved as far as the farthest one.
+/// In the plane it is assumed that each of two grains has moved as far as the one that moved farthest.
 template <>
 double Budgets<2>::approach_before_selection() const
 {
@@ -173,12 +175,12 @@ double Budgets<2>::approach_before_selection() const
 	return 2 * farthest + state.images_went_since_search + state.images_may_go;
 }
 
-/// In space the differences of displacements between neighbours count.
+/// In space the differences between the displacements of neighbours are used, which are smaller.
 template <>
 double Budgets<3>::approach_before_selection() const
 {
 	for (const double way : displaced)
-		if (!std::isfinite(way)) return HUGE_VAL;  // someone has moved grains by hand
+		if (!std::isfinite(way)) return HUGE_VAL;  // other code has moved grains
 	return RelativeMotionGrid(state, state.horizon).largest_approach();
 }
 

@@ -1,4 +1,4 @@
-/// Checkpoint files: atomic, checksummed, versioned.
+/// Writes and reads checkpoint files, which appear under their name only when complete, and carry a checksum and a version.
 #include "engines/loop/checkpoint.hpp"
 
 #include "engines/geometry/section.hpp"

@@ -1,4 +1,4 @@
-/// Books contacts and motion of one step after the other.
+/// Enters the contacts and motions of each step in the ledger.
 #include "engines/loop/energy_ledger.hpp"
 
 #include <algorithm>
@@ -13,17 +13,17 @@ double booked(Halves now, double& pending) { return std::exchange(pending, now.a
 
 }  // namespace
 
-/// Of one interval, over all contacts.
+/// Sums over all contacts, for one step.
 template <int D>
 struct EnergyLedger<D>::Sums {
 	double elastic_normal = 0, elastic_tangential = 0;  // energies at the step
 	Halves normal_damping, tangential_damping, cell;
 	double friction = 0, opening = 0, stiffening = 0;
-	double elastic_work = 0;  // of the normal springs on the grains
-	double turning = 0;       // tangential work that differs because the contact turned
+	double elastic_work = 0;  // work of the normal springs on the grains
+	double turning = 0;       // difference of the tangential work because the contact turned
 };
 
-/// Into the plane of another normal.
+/// Turns the tangential vectors of `before` into the plane across the new normal n.
 template <int D>
 typename EnergyLedger<D>::Past EnergyLedger<D>::turned(Past before, const Vec<D>& n)
 {

@@ -1,4 +1,4 @@
-/// Lays one direction of a grid.
+/// Divides one axis of a grid into cells.
 #include "engines/loop/grid_axis.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr int cells_needed_when_periodic = 3;  // fewer, and a pair would be met through two of its images
+constexpr int cells_needed_when_periodic = 3;  // with fewer a pair would be found through two of its images
 
 }  // namespace
 

@@ -36,7 +36,8 @@ void check_grain(const Scene<D>& scene, std::size_t i)
 		"mass must be positive, and finite for a free grain, got ", g.mass, " in grain ", i);
 }
 
-/// In space a body that may turn about some axes of the world and not about others is known where one is left, or where it is a ball.
+/// In space the equations of motion cover bodies that turn about all axes, one or none; two axes only if the three moments are
+/// equal.
 void check_turning(const RigidBody<2>&, std::size_t) {}
 void check_turning(const RigidBody<3>& body, std::size_t b)
 {
@@ -78,7 +79,8 @@ laws::Terms<Real> terms_of(const ContactLaw& law, const laws::Squeezed<Real>& co
 	return std::visit([&](const auto& l) { return l.terms(contact); }, law);
 }
 
-/// Of the contact's two directions, each with what yields in it; infinite where nothing does.
+/// The smaller of the critical steps along and across the contact, with the inverse mass that responds in each direction;
+/// infinite where nothing responds.
 template <int D>
 double critical_step_of(
 	const Scene<D>& scene, const laws::Terms<Real>& k, double inverse_pressed_mass, double inverse_sliding_mass)
@@ -91,7 +93,7 @@ double critical_step_of(
 	return smallest;
 }
 
-/// What a member of a body may touch: a grain, a member of another body, or a solid.
+/// One side of a contact, as the critical step needs it: a grain, a member of a body, or a solid.
 struct Yielding {
 	double radius, inverse_mass;  // [m], [1/kg]
 	double inverse_sliding_mass;  // of the surface, along the contact [1/kg]
@@ -101,7 +103,7 @@ struct Yielding {
 double smallest_moment(double inertia) { return inertia; }
 double smallest_moment(const Vec<3>& i) { return std::min({ i[0], i[1], i[2] }); }
 
-/// A body yields by moving and by turning, with a lever of at most its farthest point's distance from the centre.
+/// A body responds by translation and by rotation; the lever is at most the distance of its farthest point from the centre.
 template <int D>
 Yielding yielding(const RigidBody<D>& body, double arm, double radius, double inverse_mass)
 {
@@ -122,7 +124,7 @@ Yielding yielding(const Scene<D>& scene, const Grain<D>& grain)
 	return { grain.radius, 1 / grain.mass, (1 + spin_response) / grain.mass, 1 / grain.mass };
 }
 
-/// A surface is a plane to a grain: it has no radius of its own.
+/// The surface of a solid counts as a plane, whose radius is given as 0.
 template <int D>
 Yielding yielding(const Scene<D>& scene, const Solid<D>& solid)
 {
@@ -135,7 +137,7 @@ Yielding yielding(const Scene<D>& scene, const Solid<D>& solid)
 	return yielding(body, std::min(far, farthest_grain), 0, body.responds_somewhere() ? 1 / body.mass : 0);
 }
 
-/// The grains that decide: the lightest and the largest free one, and the largest member of each body.
+/// The grains that decide the checks: the lightest and the largest free one, and the largest member of each body.
 template <int D>
 std::vector<std::size_t> telling_grains(const Scene<D>& scene)
 {
@@ -173,7 +175,8 @@ double critical_step_of(const Scene<D>& scene, const Yielding& one, const Yieldi
 		one.inverse_sliding_mass + other.inverse_sliding_mass);
 }
 
-/// A pair is met through one image: the nearest. Where a second image could touch as well, a contact would be lost.
+/// Refuses a period in which two images of one grain could touch the same body, because only the contact with the nearest is
+/// computed.
 template <int D>
 void check_images(const Scene<D>& scene)
 {
@@ -198,7 +201,7 @@ void check_images(const Scene<D>& scene)
 	}
 }
 
-/// What only disks may have.
+/// Checks what differs between disks and spheres: sheared cells, laws and damping.
 void check_dimension(const Scene<2>& scene)
 {
 	if (!scene.cell.sheared()) return;
@@ -232,7 +235,7 @@ double critical_time_step_of_bodies(const Scene<D>& scene, double overlap)
 	double smallest = HUGE_VAL;
 	const std::vector<std::size_t> telling = telling_grains(scene);
 	const auto meet_all = [&](const Yielding& one, int body) {
-		if (one.inverse_sliding_mass == 0) return;  // it yields to nothing
+		if (one.inverse_sliding_mass == 0) return;  // it does not respond to forces
 		for (const std::size_t other : telling)
 			if (scene.grains[other].body != body)
 				smallest = std::min(smallest, critical_step_of(scene, one, yielding(scene, scene.grains[other]), overlap));

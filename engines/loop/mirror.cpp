@@ -1,4 +1,5 @@
-/// Makes the running loop of YADE's bodies, and writes it back: driven bodies at every step, all of them where anyone can look.
+/// Builds the running loop from YADE's bodies and writes it back: driven bodies at every step, all bodies before other code may
+/// read them.
 #include <algorithm>
 #include <cmath>
 
@@ -88,7 +89,7 @@ void MirrorOf<D>::bring_settings_of_step()
 	if (stepper->settings().dt != scene().dt || other_overlap) stepper->set_time_step(scene().dt);
 }
 
-/// Does the work; if a guard trips, everyone can see in O.bodies what went wrong.
+/// Does the work; if a guard raises an error, writes all bodies first, so that O.bodies shows what went wrong.
 template <int D>
 template <class Work>
 void MirrorOf<D>::guarded(Work work)
@@ -163,7 +164,7 @@ void MirrorOf<D>::write_bodies()
 template <int D>
 void MirrorOf<D>::sync()
 {
-	stepper->take_back_body_forces();  // they have moved springs that are shown here
+	stepper->take_back_body_forces();  // these forces have already advanced the springs that are written here
 	for (std::size_t g = 0; g < map.grain_id.size(); ++g)
 		if (scene().bodies->exists(map.grain_id[g])) write_grain(g);
 	keep_walls();
@@ -180,7 +181,8 @@ void MirrorOf<D>::sync()
 	remember_what_is_written();
 }
 
-/// YADE counts the windings of a periodic box. They are not summed over syncs, because results must not depend on the number of syncs.
+/// Writes a grain in the periodic image that is nearest to its last place in YADE. Displacements are not summed over syncs,
+/// because results must not depend on the number of syncs.
 template <int D>
 void MirrorOf<D>::write_grain(std::size_t g)
 {
@@ -188,11 +190,10 @@ void MirrorOf<D>::write_grain(std::size_t g)
 	yade::State& state = state_of(map.grain_id[g]);
 	if (now.body != free_grain && (map.body_id[now.body] < 0 || map.body_id[now.body] == map.grain_id[g])) return;
 	Vec<D> place;
-	if (now.body != free_grain) {  // beside its clump, as YADE has it
+	if (now.body != free_grain) {  // in the same image as its clump, as in YADE
 		place = stepper->bodies()[now.body].place + stepper->arm(g);
 	} else {
-		const bool sheared =
-			stepper->settings().cell.sheared();  // there an image has a velocity of its own: bodies show the loop's
+		const bool sheared = stepper->settings().cell.sheared();  // images then differ in velocity, so the loop's own is written
 		for (int k = 0; k < D; ++k) {
 			const Real period = sheared ? 0 : engine.periods[k];
 			place[k] = period > 0 ? now.place[k] + period * std::nearbyint((state.pos[k] - now.place[k]) / period) : now.place[k];
@@ -201,7 +202,7 @@ void MirrorOf<D>::write_grain(std::size_t g)
 	write_motion<D>(place, now.velocity, now.spin, state);
 }
 
-/// The springs of the last sync between grains that are there still.
+/// The springs of the last sync whose two grains still exist.
 template <int D>
 std::vector<Spring<D>> MirrorOf<D>::kept_springs() const
 {

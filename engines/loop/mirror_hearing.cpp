@@ -41,7 +41,7 @@ typename MirrorOf<D>::Written MirrorOf<D>::written_in(const yade::Body& body) co
 			"GrainLoop: body " + std::to_string(body.id) + " has lost its shape or its state; restore it, or erase the body");
 	const yade::State& s = *body.state;
 	Written w;
-	std::memset(&w, 0, sizeof w);  // the bytes between the numbers too: they are compared
+	std::memset(&w, 0, sizeof w);  // padding too, because the bytes are compared
 	for (int k = 0; k < 3; ++k)
 		w.place[k] = s.pos[k], w.velocity[k] = s.vel[k], w.spin[k] = s.angVel[k], w.inertia[k] = s.inertia[k];
 	w.mass = s.mass;
@@ -58,7 +58,7 @@ bool MirrorOf<D>::is_member_or_body(std::size_t g) const
 	return owner != free_grain && map.body_id[owner] >= 0;
 }
 
-/// What stands in O.bodies now is what everyone was shown.
+/// Remembers the present contents of O.bodies, to detect later changes by other code.
 template <int D>
 void MirrorOf<D>::remember_what_is_written()
 {
@@ -72,7 +72,8 @@ void MirrorOf<D>::remember_what_is_written()
 	open = true;
 }
 
-/// Applies changes of grains by other code since all were last written: of a motion at once, of anything else by reading the scene again.
+/// Applies changes that other code has made to grains since all were last written: a changed motion is taken over at once, for
+/// any other change the scene is read again.
 template <int D>
 void MirrorOf<D>::hear_bodies()
 {
@@ -82,7 +83,7 @@ void MirrorOf<D>::hear_bodies()
 	constexpr int first_spin = D == 2 ? 2 : 0;
 	for (std::size_t g = 0; g < written.size(); ++g) {
 		const int id = map.grain_id[g];
-		if (!scene().bodies->exists(id)) continue;  // require_bodies will say so
+		if (!scene().bodies->exists(id)) continue;  // require_bodies raises the error
 		Written now = written_in(body_of_yade(id));
 		const Written& then = written[g];
 		if (now == then) continue;
@@ -95,7 +96,7 @@ void MirrorOf<D>::hear_bodies()
 		if (free || is_member_or_body(g)) std::copy(then.place, then.place + D, now.place);
 		std::copy(then.velocity, then.velocity + D, now.velocity);
 		std::copy(then.spin + first_spin, then.spin + 3, now.spin + first_spin);
-		if (!free) now.blocked = then.blocked;  // followed at every step, or looked at in read_anew_what_changed
+		if (!free) now.blocked = then.blocked;  // handled at every step by follow_bodies or read_anew_what_changed
 		if (!(now == then))
 			anew = true;
 		else if (free)
@@ -120,9 +121,10 @@ void MirrorOf<D>::hear_bodies()
 	}
 }
 
-/// A frozen grain that someone has set in motion becomes a body of its own. A body with another mass or inertia, or one that is held
-/// or freed, counts otherwise in its pairs; one that was frozen and is driven counts as infinitely heavy as before. Either is heard
-/// in the same step, whose contacts still see the velocities of the step before, as on YADE's loop.
+/// Reads the scene again if a frozen grain was set in motion, which makes it a body of its own, or if the mass, the inertia, the
+/// blocked directions, the damping or the surface of a body have changed, which changes its contacts. A frozen grain that is
+/// driven keeps an infinite mass. The change acts in this step, whose contacts still use the velocities of the step before, as on
+/// YADE's loop.
 template <int D>
 void MirrorOf<D>::read_anew_what_changed()
 {
@@ -133,7 +135,7 @@ void MirrorOf<D>::read_anew_what_changed()
 	for (std::size_t b = 0; b < map.body_id.size(); ++b) before[map.body_id[b]] = stepper->bodies()[b];
 	build();
 	for (std::size_t b = 0; b < map.body_id.size(); ++b) {
-		const RigidBody<D> was = before[map.body_id[b]];  // at rest where it was among the frozen
+		const RigidBody<D> was = before[map.body_id[b]];  // zero velocity if it was frozen
 		if (map.body_id[b] >= 0) stepper->set_velocity(b, was.velocity, was.spin);
 	}
 }
@@ -166,7 +168,7 @@ bool MirrorOf<D>::counts_otherwise() const
 	return false;
 }
 
-/// Contacts follow the loop's own constants: a material that is changed would change nothing.
+/// Refuses changed materials: contacts use the loop's own constants, so the change would have no effect.
 template <int D>
 void MirrorOf<D>::require_materials() const
 {
@@ -180,7 +182,7 @@ void MirrorOf<D>::require_materials() const
 	}
 }
 
-/// Bodies may be erased while the loop does not look; the few that it writes at every step are checked at every step.
+/// Refuses erased bodies. Those that the loop writes at every step are checked at every step, all others with `all`.
 template <int D>
 void MirrorOf<D>::require_bodies(bool all) const
 {
@@ -214,14 +216,14 @@ void MirrorOf<D>::require_spread() const
 	}
 }
 
-/// Forces that engines and O.forces added since the last step act in this one, as NewtonIntegrator applies them: on grains that are
-/// free, on bodies, and on clumps with those on their members. Then the container is emptied, which is ForceResetter's work.
+/// Forces that engines and O.forces have added since the last step act in this one, as in NewtonIntegrator: on free grains, on
+/// bodies, and on clumps together with the forces on their members. Then the container is emptied, as by ForceResetter.
 template <int D>
 void MirrorOf<D>::take_outside_forces()
 {
 	yade::ForceContainer& forces = scene().forces;
 	forces.sync();
-	const bool added = forces.syncCount != engine.forces_reset_at;  // someone else may have summed them up before
+	const bool added = forces.syncCount != engine.forces_reset_at;  // another engine may have called sync before
 	if (!added && !pushed) return;
 	std::vector<Push<D>> pushes;
 	for (RigidBody<D>& body : stepper->bodies()) body.push = {}, body.push_torque = {};
@@ -270,12 +272,12 @@ void MirrorOf<D>::push_with(int id, const Vector3r& force, const Vector3r& torqu
 		pushes.push_back({ std::uint32_t(g), f, t });
 		return;
 	}
-	if (owner < 0 || map.body_id[owner] < 0) return;  // frozen: it answers to no force
+	if (owner < 0 || map.body_id[owner] < 0) return;  // a frozen grain does not respond to forces
 	RigidBody<D>& body = stepper->bodies()[owner];
 	body.push += f;
 	body.push_torque += t;
 	if (g < 0 || map.body_id[owner] == id) return;
-	body.push_torque += geometry::cross(stepper->arm(g), f);  // of a clump's member
+	body.push_torque += geometry::cross(stepper->arm(g), f);  // torque of a force on a member of a clump
 }
 
 template class MirrorOf<2>;

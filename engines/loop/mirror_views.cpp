@@ -1,4 +1,4 @@
-/// What GrainLoop shows of grains, contacts and walls: those at the present positions, before the step moves anything.
+/// Grains, contacts and walls as other code sees them: at the present positions, before the step moves anything.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace graindrive::loop {
 namespace {
 
 constexpr int no_body = -1;
-constexpr int first_wall = -2;  // how Python sees walls: -2 - side
+constexpr int first_wall = -2;  // Python's id of a wall is -2 - side
 
 Vector3r tangential_in_yade(const Vec<2>& n, double friction) { return { -n[1] * friction, n[0] * friction, 0 }; }
 Vector3r tangential_in_yade(const Vec<3>&, const Vec<3>& friction) { return in_yade<3>(friction); }
@@ -33,7 +33,7 @@ void MirrorOf<D>::look(SceneView& view, bool with_contacts)
 		const int id = map.grain_id[g];
 		bool free = true;
 		Real mass = now.mass;
-		if (known.grains[g].body != free_grain) {  // it may be a grain all the same (a large one, a watched one)
+		if (known.grains[g].body != free_grain) {  // YADE may count it as a free grain (a large or watched one)
 			free = is_free_grain(body_of_yade(id));
 			mass = state_of(id).mass;
 		}
@@ -49,7 +49,7 @@ void MirrorOf<D>::look(SceneView& view, bool with_contacts)
 	for (const Contact<D>& c : stepper->surface_contacts()) add(c, no_grain);
 }
 
-/// The rigid body that a YADE body is, or is part of; a free grain that someone asks for becomes one.
+/// Index of the rigid body that a YADE body is, or is part of. A free grain becomes a rigid body by this call.
 template <int D>
 int MirrorOf<D>::body_index(int id)
 {
@@ -129,7 +129,7 @@ Table MirrorOf<D>::spins() const
 	return table;
 }
 
-/// A solid's body, or -2 - side of a wall.
+/// Id of the solid's body, or -2 - side for a wall.
 template <int D>
 int MirrorOf<D>::id_of_surface(std::uint32_t surface) const
 {
@@ -138,7 +138,8 @@ int MirrorOf<D>::id_of_surface(std::uint32_t surface) const
 	return map.body_id[known.solids[surface - known.walls.size()].body];
 }
 
-/// The point is the middle of the overlap beside i, as YADE's; forces act on j, as YADE's on body 2.
+/// A contact in YADE's convention: the point is the middle of the overlap, in the image that touches i; the forces act on j,
+/// YADE's body 2.
 template <int D>
 SeenContact MirrorOf<D>::seen(const Contact<D>& c, int partner) const
 {
@@ -218,7 +219,7 @@ void MirrorOf<D>::keep_walls()
 	}
 }
 
-/// From the attributes into a loop that was just built.
+/// Gives a loop that was just built the springs at walls and solids that the attribute wallSprings holds.
 template <int D>
 void MirrorOf<D>::bring_surface_springs()
 {

@@ -1,4 +1,4 @@
-/// Which processor the program finds itself on.
+/// Finds out which instructions the processor has.
 #include "engines/loop/processor.hpp"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-/// Lays the grid, enters grains, and joins cells to cubes axis by axis.
+/// Sets up the grid, enters grains, and joins cells to cubes axis by axis.
 #include "engines/loop/relative_motion_grid.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double cells_per_grain = 2;  // at most; wider cells where a box is mostly empty
+constexpr double cells_per_grain = 2;  // at most: a box that is mostly empty gets wider cells
 
 }  // namespace
 
@@ -30,8 +30,8 @@ RelativeMotionGrid::RelativeMotionGrid(const State<3>& of, double until) : state
 	for (int axis = 0; axis < 3; ++axis) join_next_along(axis);
 }
 
-/// Cells are just so wide that free grains that may touch lie in adjacent cells: in a shear flow, displacements differ more within a
-/// wider cell. A larger member is put into all cells that its box overlaps.
+/// Cells are as narrow as possible, because in a shear flow displacements differ more within a wider cell; but free grains that
+/// may touch must lie in the same or in adjacent cells. A larger member is entered in all cells that its box overlaps.
 void RelativeMotionGrid::lay()
 {
 	double most_allowed = 0;
@@ -88,8 +88,8 @@ void RelativeMotionGrid::enter(std::uint32_t row)
 			for (int z = first[2]; z <= last[2]; ++z) at(within(0, x), within(1, y), within(2, z)).include(motion);
 }
 
-/// Each cell takes in what the next one along an axis has; after the three axes all of a cube of eight. Two grains in adjacent cells lie
-/// in one such cube.
+/// Each cell includes the motions of the next cell along an axis; after the three axes it includes a cube of eight cells. Two
+/// grains in adjacent cells lie in one such cube.
 void RelativeMotionGrid::join_next_along(int axis)
 {
 	const std::vector<Motion> before = motions;
@@ -107,7 +107,7 @@ double RelativeMotionGrid::largest_approach() const
 {
 	double largest = 0;
 	for (const Motion& motion : motions) {
-		if (!(motion.now.low[0] <= motion.now.high[0])) continue;  // nobody is here
+		if (!(motion.now.low[0] <= motion.now.high[0])) continue;  // no grain here
 		for (const Range& range : { motion.now, motion.then })
 			largest = std::max(largest, length(range.high - range.low) + 2 * motion.allowed);
 	}

@@ -50,7 +50,7 @@ void RigidBodies<2>::turn(RigidBody<2>& body) const
 		body.spin += (body.torque + body.push_torque) / body.inertia * motion.kick;
 }
 
-/// With all axes free Euler's equations hold; about one free axis the moment of inertia about it decides; a ball has no preferred axis.
+/// With all axes free the angular momentum is integrated; about one free axis, or with three equal moments, the spin is.
 template <>
 void RigidBodies<3>::turn(RigidBody<3>& body) const
 {

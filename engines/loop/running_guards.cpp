@@ -1,4 +1,4 @@
-/// The bounds of grains, and the messages of the guards.
+/// Checks during the run: the bounds that grains must not pass, and the messages of all guards.
 #include "engines/loop/running_guards.hpp"
 
 #include <algorithm>
@@ -8,9 +8,9 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double free_fall = 3;  // how far below a base a grain counts as lost [largest free diameter]
+constexpr double free_fall = 3;  // a grain this far below the base counts as lost [largest free diameter]
 
-/// "(1, 2)".
+/// The text of a vector, "(1, 2)".
 template <int D>
 std::string listed(const Vec<D>& v)
 {
@@ -35,7 +35,8 @@ std::string RunningGuards<D>::introduce(std::uint32_t row) const
 	return sentence("grain ", name, " at ", listed(state.rows[row].x), ", velocity ", listed(state.rows[row].v));
 }
 
-/// Where the caller sets bounds, these; where gravity presses grains onto held ones, some diameters behind the last of those. A wall in any case.
+/// The bound of each side: the caller's if there is one, else some diameters behind the last grain or solid that is held against
+/// gravity. A wall is a bound in any case.
 template <int D>
 std::array<typename RunningGuards<D>::Limit, 2 * D> RunningGuards<D>::limits() const
 {
@@ -48,7 +49,7 @@ std::array<typename RunningGuards<D>::Limit, 2 * D> RunningGuards<D>::limits() c
 	return all;
 }
 
-/// Two equal bounds are none.
+/// The caller's bound of a side; there is none along an axis whose two bounds are equal.
 template <int D>
 typename RunningGuards<D>::Limit RunningGuards<D>::given_bound(Side side) const
 {
@@ -56,17 +57,17 @@ typename RunningGuards<D>::Limit RunningGuards<D>::given_bound(Side side) const
 	return { outward_of(side) < 0 ? low : high, low < high, "the bounds that were set", "wider bounds, if grains may be there" };
 }
 
-/// None where gravity does not pull, or no grain is held against it.
+/// The bound behind held grains and solids; none on sides to which gravity does not pull, and none if nothing is held.
 template <int D>
 typename RunningGuards<D>::Limit RunningGuards<D>::behind_held_grains(Side side) const
 {
 	const Vec<D>& gravity = state.scene.gravity;
 	const int axis = axis_of(side);
-	int down = D - 1;  // the axis of the largest part
+	int down = D - 1;  // the axis along which gravity is largest
 	for (int k = D - 2; k >= 0; --k)
 		if (std::abs(gravity[k]) > std::abs(gravity[down])) down = k;
 	if (axis != down || !(gravity[axis] * outward_of(side) > 0)) return {};
-	double last = -HUGE_VAL;  // outwards
+	double last = -HUGE_VAL;  // coordinate of the last held grain, positive outwards
 	for (std::uint32_t row = state.n_free; row < state.n; ++row) {
 		if (state.scene.bodies[state.members[row - state.n_free].body].responds[axis]) continue;
 		last = std::max(last, outward_of(side) * state.rows[row].x[axis] + state.rows[row].radius);
@@ -77,7 +78,7 @@ typename RunningGuards<D>::Limit RunningGuards<D>::behind_held_grains(Side side)
 		const geometry::Bounds<D> box = body.bounds(solid.shape->bounds());
 		last = std::max(last, outward_of(side) < 0 ? -box.low[axis] : box.high[axis]);
 	}
-	if (last == HUGE_VAL) return {};  // a solid without end
+	if (last == HUGE_VAL) return {};  // an endless solid
 	return { outward_of(side) * (last + free_fall * 2 * state.largest_free_radius), last > -HUGE_VAL,
 		"three diameters beyond the last grain that is held against gravity",
 		"a base without gaps, or bounds if grains may fall there" };

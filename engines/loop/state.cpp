@@ -1,10 +1,10 @@
-/// What follows from a state.
+/// Computes quantities that follow from a state.
 #include "engines/loop/pair_geometry.hpp"
 
 namespace graindrive::loop {
 
-/// The reach of a body follows from its members' places, which stay as they are: a restart must find the same numbers wherever the body
-/// has gone.
+/// The reach of a body is computed from its members' places in the body's frame, which do not change, so that a restart finds the
+/// same numbers to the last bit.
 template <int D>
 void State<D>::derive()
 {
@@ -12,7 +12,7 @@ void State<D>::derive()
 	row_of.resize(n);
 	typical_diameter = largest_free_radius = 0;
 	for (std::uint32_t at = 0; at < n; ++at) row_of[index_of[at]] = at;
-	double sum = 0;  // in an order that no sorting changes
+	double sum = 0;  // summed in the order of grains, which no sorting of rows changes
 	for (const Grain<D>& grain : scene.grains) {
 		if (grain.body != free_grain) continue;
 		largest_free_radius = std::max(largest_free_radius, grain.radius);

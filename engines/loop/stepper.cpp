@@ -1,4 +1,5 @@
-/// One step: lists if anything may have come near, forces of early pairs and surfaces, the sweep, then bodies and walls.
+/// One step: new lists if a grain may have come near another, forces of early pairs and surfaces, the sweep, then bodies and
+/// walls.
 #include "engines/loop/stepper.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ Stepper<D>::Stepper(const Scene<D>& scene, const Guards<D>& guards)
 	set_up();
 }
 
-/// What follows from the settings alone.
+/// Sets up what follows from the settings alone.
 template <int D>
 void Stepper<D>::set_up()
 {
@@ -41,7 +42,7 @@ void Stepper<D>::use_whole_steps()
 	motion.dt = motion.kick = motion.drift = state.scene.dt;
 }
 
-/// Free grains first, in their order; then members, body by body.
+/// Places free grains in the first rows, in their order, then members, body by body.
 template <int D>
 void Stepper<D>::arrange_rows()
 {
@@ -105,7 +106,8 @@ void Stepper<D>::compute_body_forces()
 	body_forces_known = true;
 }
 
-/// Springs and forces of the pairs that were computed early go back to where they were, so that those can be computed again.
+/// Puts springs and forces of the early pairs back to their values before `compute_body_forces`, so that these pairs can be
+/// computed again.
 template <int D>
 void Stepper<D>::take_back_body_forces()
 {
@@ -124,7 +126,7 @@ void Stepper<D>::gather_body_forces()
 	surfaces.add_to_bodies();
 }
 
-/// False if the step could not begin; every thread learns it behind the same barrier.
+/// False if the step could not begin; all threads return the same value.
 template <int D>
 bool Stepper<D>::one_step(int rank, bool early_pairs_done)
 {
@@ -140,7 +142,7 @@ bool Stepper<D>::one_step(int rank, bool early_pairs_done)
 	return true;
 }
 
-/// All that comes before forces of pairs.
+/// Does all that comes before the forces of pairs. False if a guard has raised an error.
 template <int D>
 bool Stepper<D>::prepare(int rank)
 {
@@ -171,12 +173,13 @@ void Stepper<D>::look_before()
 	}
 }
 
-/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added first.
+/// Leapfrog is linear in the force, so a kick that comes after the sweep's own moves a grain as if all forces had been added
+/// first.
 template <int D>
 void Stepper<D>::finish()
 {
 	if (!body_forces_known) gather_body_forces();
-	moved_since_look |= surfaces.moved_by_hand();  // since forces were computed
+	moved_since_look |= surfaces.moved_by_hand();  // other code may have moved solids since the forces were computed
 	rigid.move();
 	bool sweep_has_done_it = true;
 	if constexpr (D == 2) sweep_has_done_it = pairs.sweep_knows_outside();
@@ -206,7 +209,7 @@ void Stepper<D>::finish()
 	laid_out_since_forces = false;
 }
 
-/// As after a force that acts in this step alone; where the step has half a kick and moves nothing, with half of it.
+/// Applies a change of the mean flow like a force that acts in this step only; in a half step, which moves nothing, half of it.
 template <int D>
 void Stepper<D>::change_flow()
 {
@@ -227,7 +230,7 @@ void Stepper<D>::change_flow()
 	}
 }
 
-/// One free grain after the sweep; `turning` is torque over radius [N].
+/// Adds a force to a free grain after the sweep; `turning` is torque over radius [N].
 template <int D>
 void Stepper<D>::kick_grain(std::uint32_t at, const Vec<D>& force, const Spin<D>& turning)
 {
@@ -239,7 +242,7 @@ void Stepper<D>::kick_grain(std::uint32_t at, const Vec<D>& force, const Spin<D>
 	row.x += kick * motion.drift;
 	row.surface += turning * response * motion.spin_response;
 	const std::uint32_t block = state.party_of(at);
-	state.travelled[block] += length(kick) * motion.drift;  // on top of what the sweep has counted
+	state.travelled[block] += length(kick) * motion.drift;  // the sweep has counted the rest
 	state.selection_due |= state.travelled[block] > state.allowed[block];
 }
 
@@ -259,8 +262,8 @@ void Stepper<2>::hand_outside_forces_over()
 	}
 }
 
-/// In space they are the first forces that a row adds up. A grain that is pressed on a surface would be carried far into it and back
-/// again if that force came after the sweep, and use up the way that its block has until the next selection.
+/// In space forces of surfaces and pushes are added to rows before the sweep. After the sweep they would first let a grain that
+/// is pressed on a surface move far into it and then move it back, and both ways would count against the budget of its block.
 template <>
 void Stepper<3>::hand_outside_forces_over()
 {

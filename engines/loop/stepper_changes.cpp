@@ -1,4 +1,4 @@
-/// What is changed between two steps: settings, walls, grains that are moved, the state as a whole.
+/// Changes between two steps: settings, walls, moved grains, the state as a whole.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,8 @@ void Stepper<D>::set_velocity(std::size_t body, const Vec<D>& velocity, const Sp
 	rigid.set_velocity(body, velocity, spin);
 }
 
-/// The loop's own cell differs by round-off, or because someone has put the sides elsewhere: that counts as way of the images.
+/// Takes over YADE's cell. The loop's own differs from it by round-off, or because other code has moved its sides; the difference
+/// counts as a displacement of the images.
 template <int D>
 void Stepper<D>::follow_cell(const Cell<D>& cell)
 {
@@ -115,7 +116,7 @@ void Stepper<D>::set_time_step(double dt)
 	state.scene.dt = dt;
 	use_whole_steps();
 	if (D == 2) return;
-	state.selection_due = true;  // how far drifts carry until the next one is counted in steps of one length
+	state.selection_due = true;  // the horizon assumes that all steps until the next selection have one length
 	surfaces.forget_list();
 }
 
@@ -181,7 +182,7 @@ State<D> Stepper<D>::snapshot()
 	return state;
 }
 
-/// Back to a state of the same selection.
+/// Restores an earlier state that has the same selection.
 template <int D>
 void Stepper<D>::go_back_to(const State<D>& before)
 {
@@ -192,7 +193,7 @@ void Stepper<D>::go_back_to(const State<D>& before)
 	body_forces_known = false;
 }
 
-/// What follows from a state that was put in the place of another.
+/// Rebuilds what follows from a state that has replaced another.
 template <int D>
 void Stepper<D>::resume()
 {
@@ -209,10 +210,10 @@ template <int D>
 double Stepper<D>::kinetic_energy_on_step()
 {
 	take_back_body_forces();
-	if (state.selection_due) run([&](int rank) { update_lists(rank); });  // not in the step that is undone: it may sort the rows
+	if (state.selection_due) run([&](int rank) { update_lists(rank); });  // a search's sorting is not undone
 	const State<D> before = snapshot();
 	std::unique_ptr<Books<D>> aside(nullptr);
-	aside.swap(books);  // a trial step is no business
+	aside.swap(books);  // the ledger must not enter the trial step
 	std::exception_ptr refusal;
 	try {
 		half_step(state.scene.dt, 0);
@@ -233,7 +234,7 @@ void Stepper<D>::begin_on_step()
 	half_step(0, state.scene.dt);
 }
 
-/// A step with half a kick; springs grow and grains drift for other times than dt.
+/// A step with half a kick, in which springs grow for the time `spring_time` and grains move for the time `drift`.
 template <int D>
 void Stepper<D>::half_step(double spring_time, double drift)
 {

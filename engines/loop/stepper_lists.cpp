@@ -8,21 +8,21 @@ namespace graindrive::loop {
 
 namespace {
 
-/// Aimed at, where grains are fast: in space displacements are compared over some diameters, in which a shear grows to three times as much
-/// as between two neighbours.
+/// Steps aimed at between two searches if grains are fast. In space displacements are compared over some diameters, and over
+/// these a shear flow gives three times the difference that it gives between two neighbours.
 template <int D>
 constexpr double steps_between_searches = D == 2 ? 300 : 900;
 constexpr double smallest_skin = 0.1;  // [d]
 template <int D>
-constexpr double largest_skin = D == 2 ? 0.35 : 0.6;  // [d], measured: where grains flow, searches are rarer
+constexpr double largest_skin = D == 2 ? 0.35 : 0.6;  // [d], by measurement: makes searches rarer in flowing grains
 
 }  // namespace
 
-/// All threads together; false if the lists could not be made.
+/// Makes new lists, with all threads together; false if a guard has raised an error.
 template <int D>
 bool Stepper<D>::update_lists(int rank)
 {
-	team->barrier();  // everyone has seen that it is due
+	team->barrier();  // all threads have read selection_due
 	if (rank == 0) {
 		if (D == 2 && state.selections > 0) pairs.keep_springs();
 		double farthest = 0;
@@ -54,7 +54,7 @@ bool Stepper<D>::update_lists(int rank)
 	return true;
 }
 
-/// Decides on a search, and begins it.
+/// Decides whether a search is due, and begins it.
 template <int D>
 void Stepper<D>::plan_lists()
 {
@@ -63,7 +63,8 @@ void Stepper<D>::plan_lists()
 		if (state.searches > 0) budgets.allow_travel();
 		searching = state.searches == 0 || !(budgets.approach_before_selection() <= state.skin);
 		if (searching) begin_search(), budgets.keep_horizon_within_skin();
-		// In space a search waits for neighbours to move differently, which two that pass through each other need not do.
+		// In space the guards also check after selections without a search: two grains that pass through each other need not
+		// cause a search.
 		moved_since_look |= searching || D == 3;
 	} catch (...) {
 		failure = std::current_exception();

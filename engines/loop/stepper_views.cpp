@@ -1,4 +1,4 @@
-/// What others may look at: grains in the order they were given, contacts, energies.
+/// Grains in the order in which they were given, contacts and energies, for code outside the loop.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -58,7 +58,7 @@ void Stepper<D>::spins(double* to) const
 	}
 }
 
-/// Laws that store a force limit this force by Coulomb's bound; the dashpot's force is added to it.
+/// True if the contact slips. Laws that store a force apply Coulomb's bound to this force only, not to the dashpot's force.
 template <int D>
 bool Stepper<D>::slips(const ForceParts<D>& force, const Tangent<D>& remembered) const
 {
@@ -66,7 +66,7 @@ bool Stepper<D>::slips(const ForceParts<D>& force, const Tangent<D>& remembered)
 	return length(is_force ? remembered : force.friction) >= slipping_bound() * std::abs(force.normal);
 }
 
-/// |F_t| / |F_n| from which a contact counts as slipping, less the round-off of its precision.
+/// The ratio |F_t| / |F_n| from which a contact counts as slipping: the friction coefficient less a round-off.
 template <int D>
 double Stepper<D>::slipping_bound() const
 {
@@ -97,7 +97,7 @@ std::vector<Contact<2>> Stepper<2>::contacts_in_memory() const
 	return found;
 }
 
-/// From a force on the owner where grains are now.
+/// The contact at the present positions, from the force on its owner.
 template <>
 Contact<3> Stepper<3>::contact_of(std::uint32_t first, std::uint32_t second, const Vec<3>& force, const Vec<3>& spring) const
 {
@@ -109,7 +109,7 @@ Contact<3> Stepper<3>::contact_of(std::uint32_t first, std::uint32_t second, con
 		at.overlap, spring, slips(parts, spring) };
 }
 
-/// The kernels compute all pairs once more than steps need; forces and springs that stood in memory are put back.
+/// Computes all pairs at the present positions; afterwards forces and springs in memory are as before.
 template <int D>
 std::vector<Contact<D>> Stepper<D>::present_contacts()
 {
@@ -122,13 +122,13 @@ std::vector<Contact<D>> Stepper<D>::present_contacts()
 		pairs.with_all_forces([&] { found = contacts_in_memory(); });
 		drifted = moved;
 	} else {
-		take_back_body_forces();  // its springs have grown by this step already
+		take_back_body_forces();  // its springs are already those after this step
 		pairs.each_force_now([&](std::uint32_t a, std::uint32_t b, const Vec<3>& force, const Vec<3>&, const Vec<3>& spring) {
 			found.push_back(contact_of(a, b, force, spring));
 		});
 		if (was_under_way) compute_body_forces();
 	}
-	if (!was_under_way) take_back_body_forces();  // who looks leaves no trace
+	if (!was_under_way) take_back_body_forces();  // the state is as before
 	return found;
 }
 
@@ -142,7 +142,7 @@ typename Stepper<D>::Sight Stepper<D>::look_between_steps()
 	return sight;
 }
 
-/// A grain where it was that long ago, within the last step: x_n = x_{n+1} - v_{n+1/2} dt, members with their body.
+/// A grain's row at an earlier time within the last step: x_n = x_{n+1} - v_{n+1/2} dt; members move with their body.
 template <int D>
 Row<D> Stepper<D>::row_before(double time, std::uint32_t at) const
 {
@@ -153,7 +153,7 @@ Row<D> Stepper<D>::row_before(double time, std::uint32_t at) const
 	return row;
 }
 
-/// Time since the forces of a pair that stand in memory were computed [s].
+/// Time by which grains have moved since the pair's forces in memory were computed [s].
 template <>
 double Stepper<2>::moved_since_forces(std::uint32_t candidate) const
 {
@@ -179,7 +179,7 @@ void Stepper<2>::touches_on(std::size_t b, std::vector<Touch<2>>& touches) const
 			const ForceParts<2> f = pairs.parts(c);
 			if (f.normal == 0 && f.friction == 0) return;
 			const Candidate& pair = state.pairs.candidates[c];
-			const Vec<2> n = (is_partner ? -1 : 1) * f.n;  // F_t along z x n turns round with n
+			const Vec<2> n = (is_partner ? -1 : 1) * f.n;  // F_t is counted along z x n, which changes its sign with n
 			const double radius = state.rows[at].radius,
 						 lever = pairs.at_contact_point() ? radius - overlap_at_forces(c) / 2 : radius;
 			touches.push_back({ state.index_of[at], state.index_of[is_partner ? pair.first : pair.second],
@@ -238,7 +238,7 @@ void Stepper<D>::append_surface_touches(std::size_t b, std::vector<Touch<D>>& to
 		}
 		if (surfaces.is_wall(c.second) || surfaces.solid(c.second).body != static_cast<int>(b)) continue;
 		const Vec<D> point = c.point - (c.overlap / 2) * c.n;
-		const Tangent<D> friction = D == 2 ? c.friction : -c.friction;  // along z x n it turns round with n
+		const Tangent<D> friction = D == 2 ? c.friction : -c.friction;  // counted along z x n, which changes its sign with n
 		touches.push_back({ std::uint32_t(size()) + c.second, c.first,
 			surfaces.seen_from_solid(c.second, body, point) - body.place, -c.n, c.normal, friction, c.slipping });
 	}

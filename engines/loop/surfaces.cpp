@@ -1,4 +1,4 @@
-/// Touches of grains with walls and solids: list, forces, motion.
+/// Contacts of grains with walls and solids: list, forces, motion.
 #include "engines/loop/surfaces.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double least_reach = 0.2;  // how far from a surface grains are listed [d]
+constexpr double least_reach = 0.2;  // grains are listed at least up to this distance from a surface [d]
 
 using geometry::cross;
 
@@ -35,8 +35,9 @@ bool Surfaces<D>::moved_by_hand()
 	return moved;
 }
 
-/// The order is that of grains, wherever they lie in memory. The list reaches twice as far as grains may come until the next selection,
-/// so that fast grains do not make it due at every step; which of them touch does not depend on it.
+/// Lists the grains near each surface, in the order in which they were given. The list reaches twice as far as grains may move
+/// until the next selection, so that fast grains do not make a new list due at every step; the reach does not change which grains
+/// touch.
 template <int D>
 void Surfaces<D>::list(double to_come)
 {
@@ -62,7 +63,8 @@ void Surfaces<D>::list(double to_come)
 	std::fill(surface_way.begin(), surface_way.end(), 0);
 }
 
-/// Not a grain of a body that never moves with a surface that never does, nor one of the solid's own body; nor one beyond a solid's box.
+/// False if neither the grain nor the surface can move, if the grain belongs to the solid's own body, or if it is outside the
+/// solid's box.
 template <int D>
 bool Surfaces<D>::may_touch(std::uint32_t s, std::uint32_t g) const
 {
@@ -164,7 +166,7 @@ void Surfaces<D>::take_back()
 	for (SurfaceTouch<D>& touch : state.touches) touch.slip = touch.slip_before, touch.spring_normal = touch.spring_normal_before;
 }
 
-/// Free grains have moved by then, so their data are those stored by `compute_forces`.
+/// Adds forces to bodies. Free grains have already moved, so the values stored by `compute_forces` are used.
 template <int D>
 void Surfaces<D>::add_to_bodies()
 {
@@ -188,7 +190,7 @@ void Surfaces<D>::add_to_bodies()
 	}
 }
 
-/// A solid that turns comes to a grain no faster than at the farthest grain.
+/// An upper bound for the speed at which a surface approaches grains; that of a turning solid is taken at the farthest grain.
 template <int D>
 double Surfaces<D>::speed_of(std::uint32_t s) const
 {
@@ -202,7 +204,7 @@ void Surfaces<D>::measure_spread()
 {
 	farthest_grain.clear();
 	for (std::uint32_t s = state.scene.walls.size(); s < count(); ++s) {
-		double farthest = 0;  // squared
+		double farthest = 0;  // squared distance
 		const RigidBody<D>& body = state.scene.bodies[solid(s).body];
 		for (std::uint32_t i = 0; i < state.n && length(body.spin) > 0; ++i)
 			farthest = std::max(farthest, geometry::squared_norm(seen_from_solid(s, body, state.rows[i].x) - body.place));

@@ -1,4 +1,5 @@
-/// Threads wait by polling for a short time, then by sleeping: this is fast on a free machine and frees cores on a busy one.
+/// Threads wait by polling for a short time, then by sleeping: polling is fast on an idle machine, sleeping frees cores on a busy
+/// one.
 #include "engines/loop/thread_team.hpp"
 
 #include <chrono>
@@ -27,8 +28,8 @@ void Epoch::wait_past(unsigned seen)
 bool Epoch::seen_while_looking(unsigned seen) const
 {
 	using Clock = std::chrono::steady_clock;
-	constexpr auto patience = std::chrono::microseconds(50);  // falling asleep and waking up takes as long
-	constexpr int looks_at_once = 32;                         // the clock costs as much as a look
+	constexpr auto patience = std::chrono::microseconds(50);  // falling asleep and waking up take about as long
+	constexpr int looks_at_once = 32;                         // between two readings of the clock, which cost as much as a look
 	for (const auto end = Clock::now() + patience; Clock::now() < end;)
 		for (int looks = 0; looks < looks_at_once; ++looks) {
 			if (count.load(std::memory_order_acquire) != seen) return true;

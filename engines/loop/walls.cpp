@@ -1,4 +1,4 @@
-/// What walls and solids may be, and how large the box is that they bound.
+/// Checks walls and solids, and computes the size of the box that they bound.
 #include <algorithm>
 #include <cmath>
 
@@ -36,7 +36,8 @@ double extent(const Scene<D>& scene, int axis)
 	return low && high ? high->position - low->position : 0;
 }
 
-/// To the bound of its own pair of grains: a wall is to a grain what a grain of the same size and mass is to one of twice both.
+/// Critical step at walls. The contact of a grain with a wall has the effective radius and mass of a pair of two grains with
+/// twice the radius and mass, so the bound for pairs of such grains is used.
 template <int D>
 double critical_step_at_surfaces(Scene<D> scene)
 {
@@ -73,7 +74,7 @@ void check_wall(const Scene<D>& scene, const Wall<D>& wall)
 		wall_extent(scene, wall));
 }
 
-/// A box so long along every axis on which the given one ends as its diagonal: what turns stays within.
+/// A box that holds the given one in any orientation: its sides have the length of the diagonal, except along endless axes.
 template <int D>
 geometry::Bounds<D> turned_any_way(geometry::Bounds<D> box)
 {
@@ -88,7 +89,7 @@ geometry::Bounds<D> turned_any_way(geometry::Bounds<D> box)
 	return box;
 }
 
-/// Only the image of a solid that is nearest to a grain's centre counts, so no other image may touch the grain.
+/// Only the image of a solid that is nearest to a grain's centre is computed, so no other image may touch the grain.
 template <int D>
 void check_solid(const Scene<D>& scene, const Solid<D>& solid)
 {

@@ -9,7 +9,7 @@ namespace {
 
 using Matrix = Eigen::Matrix<Real, 3, 3>;
 
-/// Its largest part that is neither along x across y nor, where `grows`, along y.
+/// True if the velocity gradient has no entries but (0, 1), (1, 1) and, if `with_diagonal`, the rest of the diagonal.
 bool is_flow(Matrix m, bool with_diagonal)
 {
 	m(0, 1) = m(1, 1) = 0;

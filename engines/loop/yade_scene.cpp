@@ -13,7 +13,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double large = 1.5;  // times the median radius: such a disk would widen every cell of the search
+constexpr double large = 1.5;  // over the median radius: larger grains would widen every cell of the search
 
 using yade::State;
 
@@ -28,7 +28,7 @@ double median_radius(const yade::BodyContainer& bodies)
 	return radii[radii.size() / 2];
 }
 
-/// "disk" or "sphere".
+/// The word "disk" or "sphere".
 template <int D>
 constexpr const char* grain_word = D == 2 ? "disk" : "sphere";
 
@@ -112,7 +112,7 @@ void write_state(const RigidBody<D>& body, const YadeBodies::Turned& turned, Sta
 {
 	write_motion<D>(body.place, body.velocity, body.spin, state);
 	state.ori = orientation(body, turned);
-	if constexpr (D == 3) {  // of a body whose moments differ it is not parallel to the spin
+	if constexpr (D == 3) {  // angular momentum is not parallel to the spin if the moments differ
 		const bool tumbles = body.turns_somewhere() && body.spin == body.spin_of_momentum;
 		const Vector3r in_body = state.ori.conjugate() * state.angVel;
 		state.angMom = tumbles ? in_yade<3>(body.momentum) : state.ori * Vector3r(state.inertia.cwiseProduct(in_body));
@@ -151,7 +151,7 @@ void require_alike(const yade::BodyContainer& bodies, const YadeBodies& map, Sce
 	}
 }
 
-/// Two groups of bodies that do not see each other in YADE's collider: they share no bit of their masks.
+/// Refuses two groups of bodies whose masks share no bit: YADE's collider would find no contacts between them, GrainLoop would.
 void require_one_crowd(const yade::BodyContainer& bodies)
 {
 	std::map<int, int> first_with;  // mask -> id
@@ -166,7 +166,7 @@ void require_one_crowd(const yade::BodyContainer& bodies)
 					", share no bit, so on YADE's loop they have none; give them one, or use YADE's loop");
 }
 
-/// What YADE's collider and integrator heed and the loop does not.
+/// Refuses settings of a body that YADE's collider or integrator uses and the loop does not.
 template <int D>
 void require_plain(const yade::Body& body, bool damping)
 {
@@ -187,7 +187,7 @@ void require_plain(const yade::Body& body, bool damping)
 				   "GrainLoop.dimensions to 3");
 }
 
-/// Is it a grain of its own, that all forces move?
+/// True if forces move the grain in all directions.
 template <int D>
 bool moves_freely(const State& state)
 {
@@ -195,7 +195,7 @@ bool moves_freely(const State& state)
 	return !(state.blockedDOFs & needed);
 }
 
-/// Reads one body after the other.
+/// Reads bodies one by one into a scene.
 template <int D>
 struct Reader {
 	const yade::BodyContainer& bodies;
@@ -235,7 +235,8 @@ struct Reader {
 		return 0;
 	}
 
-	/// A solid is a body of its own. In the plane its section counts, as it is turned now; the recipe says that too.
+	/// A solid becomes a body of its own. In the plane its section at the present orientation is used, and the recipe describes
+	/// this section.
 	void read_solid(int id)
 	{
 		const yade::Body& body = *bodies[id];
@@ -284,7 +285,7 @@ struct Reader {
 			if (is_frozen(state)) mass = HUGE_VAL;
 		}
 		if (owner != free_grain && std::visit([](const auto& law) { return law.weighs_members_alone; }, scene.law))
-			mass = state.blockedDOFs == State::DOF_ALL ? HUGE_VAL : state.mass;  // as YADE's law sees it
+			mass = state.blockedDOFs == State::DOF_ALL ? HUGE_VAL : state.mass;  // as in YADE's law
 		map.grain_of_id[id] = int(scene.grains.size());
 		map.grain_id.push_back(id);
 		scene.grains.push_back(grain<D>(body, sphere->radius, mass, owner));

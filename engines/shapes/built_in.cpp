@@ -1,4 +1,4 @@
-/// One row a shape: names, default sizes in d, and how to draw it.
+/// A table of the built-in shapes: name, alias, default sizes in d, and the function that makes the outline.
 #include "engines/shapes/built_in.hpp"
 
 #include <array>
@@ -18,7 +18,7 @@ Outline rectangle(Real width, Real height)
 	return Outline({ { -x, -y }, { x, -y }, { x, y }, { -x, y } });
 }
 
-/// Equilateral, apex up; the centroid is a third of the height above the base.
+/// An equilateral triangle, apex up, about its centroid, which is a third of the height above the base.
 Outline triangle(Real side)
 {
 	const Real height = side * std::sqrt(3.0) / 2;

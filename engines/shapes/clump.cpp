@@ -1,4 +1,4 @@
-/// Beads at equal steps along the inset of an outline, and the checks that they represent the outline.
+/// Places beads at equal steps along the inset of an outline, and checks that they represent the outline.
 #include "engines/shapes/clump.hpp"
 
 #include <algorithm>
@@ -15,12 +15,11 @@ namespace graindrive::shapes {
 
 namespace {
 
-constexpr Real curve_turn = 0.1;  // gentler turns belong to a curve: a bead beside one misses it by 0.1 % of its radius [rad]
-constexpr Real largest_gap =
-	2.0;                      // a corner may stand out of the envelope by this many bead diameters (sharper than 23 degrees) [-]
-constexpr Real touch = 1e-5;  // beads touch the outline if they are within this part of their radius of it [-]
+constexpr Real curve_turn = 0.1;   // a smaller turn counts as part of a curve; beads miss it by 0.1 % of their radius [rad]
+constexpr Real largest_gap = 2.0;  // a corner may be this many bead diameters outside the beads (reached at 23 degrees) [-]
+constexpr Real touch = 1e-5;       // beads touch the outline if they are within this part of their radius of it [-]
 constexpr Real most_beads = 1e5;   // more would take minutes without an effect on grains
-constexpr Real step_slack = 1e-5;  // steps may pass the asked one by rounded digits of a file, or 6 / 0.5 would give 13 beads [-]
+constexpr Real step_slack = 1e-5;  // relative; without it rounded digits in a file would make 13 beads of 6 / 0.5 [-]
 
 void require(bool holds, const char* rule, Real got)
 {
@@ -58,7 +57,7 @@ Points ring(Real disk_radius, Real bead_radius, Real longest_step)
 	return centres;
 }
 
-/// By how much the path turns between two stretches, to the left [rad].
+/// The angle by which the path turns to the left between two stretches [rad].
 Real turn_between(const Stretch& before, const Stretch& after)
 {
 	const Vector2r in = before.heading(before.length), out = after.heading(0);
@@ -67,7 +66,7 @@ Real turn_between(const Stretch& before, const Stretch& after)
 
 bool is_corner(const Stretch& before, const Stretch& after) { return std::abs(turn_between(before, after)) > curve_turn; }
 
-/// The path turned so that it starts at a corner, if it has one.
+/// The same closed path, starting at a corner if it has one.
 std::vector<Stretch> from_a_corner(std::vector<Stretch> path)
 {
 	for (std::size_t i = 0; i < path.size(); ++i) {
@@ -78,7 +77,7 @@ std::vector<Stretch> from_a_corner(std::vector<Stretch> path)
 	return path;
 }
 
-/// Quarters by which the path turns on its way from the start of stretch `first` to the start of stretch `last`.
+/// The number of quarter turns of the path from the start of stretch `first` to the start of stretch `last`, rounded up.
 int quarter_turns(const std::vector<Stretch>& path, std::size_t first, std::size_t last)
 {
 	Real turn = 0;
@@ -89,8 +88,8 @@ int quarter_turns(const std::vector<Stretch>& path, std::size_t first, std::size
 	return static_cast<int>(std::ceil(std::abs(turn) / (pi / 2) - curve_turn));
 }
 
-/// Beads at equal steps from the start of stretch `first` up to, and without, the start of stretch `last`. There is one for each
-/// quarter turn, or large beads on a short curve would all stand on one side.
+/// Places beads at equal steps from the start of stretch `first` up to the start of stretch `last`, which gets none. There is at
+/// least one for each quarter turn, because large beads on a short curve would otherwise all lie on one side.
 void place(const std::vector<Stretch>& path, std::size_t first, std::size_t last, Real longest_step, Points& centres)
 {
 	Real length = 0;
@@ -119,7 +118,7 @@ Points along(const std::vector<Stretch>& path, Real longest_step)
 	return centres;
 }
 
-/// Which beads lie near a place.
+/// An index that finds the beads near a point.
 BoxIndex index_of(const Points& centres)
 {
 	std::vector<Box> boxes;
@@ -134,7 +133,7 @@ Real nearest_of(const Points& centres, const Vector2r& vertex)
 	return nearest;
 }
 
-/// Where arms thinner than a bead or very sharp corners were lost, the envelope is no longer the outline.
+/// Refuses an outline if its beads have left out an arm thinner than a bead or a very sharp corner.
 void require_covered(const Outline& outline, const Points& centres, Real bead_radius)
 {
 	const Real far = bead_radius * (1 + 2 * largest_gap);
@@ -152,7 +151,8 @@ void require_covered(const Outline& outline, const Points& centres, Real bead_ra
 	}
 }
 
-/// The inset is made of the outline less its straightest vertices, and joined within a tolerance: the beads have the last word.
+/// Checks that every bead touches the outline. The inset cannot ensure it: it ignores nearly straight vertices and joins within a
+/// tolerance.
 void require_touching(const Outline& outline, const Points& centres, Real bead_radius)
 {
 	const EdgeIndex edges(outline.corners());

@@ -1,4 +1,4 @@
-/// The tree is Boost.Geometry's R-tree.
+/// Finds edges near a point or box in an R-tree of Boost.Geometry.
 #include "engines/shapes/edge_index.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Shifted edges and arcs, trimmed by what is closer, then joined in the order in which they touch the outline.
+/// Shifts edges inwards, adds arcs at corners, cuts off what is too close to another edge, and joins the rest into a ring.
 #include "engines/shapes/inset.hpp"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace graindrive::shapes {
 
 namespace {
 
-// All of the distance of the inset [-]:
-constexpr Real straight_within = 1e-6;  // a vertex closer to the line is none
-constexpr Real round_off = 1e-12;       // an edge's neighbours may be this much closer, other edges must be this much farther
+// Lengths over the distance of the inset [-]:
+constexpr Real straight_within = 1e-6;  // vertices closer than this to a straight line are left out
+constexpr Real round_off = 1e-12;       // neighbouring edges may be closer by this, other edges must be farther by this
 constexpr Real joint = 1e-5;            // stretches whose ends are this close are joined
-constexpr Real nudge = 1e-7;            // by which the inset is moved inwards if round-off has left it open
+constexpr Real nudge = 1e-7;            // the inset is moved inwards by this if round-off has left it open
 
 [[noreturn]] void throw_too_thin(const std::string& what, Real distance)
 {
@@ -46,7 +46,8 @@ std::vector<Raw> shifted_edges_and_arcs(const EdgeIndex& edges, Real distance)
 	return raw;
 }
 
-/// Cuts away what is closer to edge i than the inset's distance; a circle may be met from either side of its seam.
+/// Cuts off what is closer to edge i than the inset's distance. On an arc the interval may lie a full turn before or after the
+/// arc's start.
 void trim(std::vector<Interval>& parts, const Raw& raw, const EdgeIndex& edges, std::size_t i, Real distance)
 {
 	if (i == raw.first || i == raw.last || parts.empty()) return;
@@ -62,7 +63,7 @@ void trim(std::vector<Interval>& parts, const Raw& raw, const EdgeIndex& edges, 
 	}
 }
 
-/// Trims by all edges that can reach the part between `begin` and `end`.
+/// Cuts off what is too close to any edge near the part.
 void trim_by_search(std::vector<Interval>& parts, const Interval& part, const Raw& raw, const EdgeIndex& edges, Real distance)
 {
 	const Stretch piece = raw.stretch.part(part.begin, part.end);
@@ -72,7 +73,8 @@ void trim_by_search(std::vector<Interval>& parts, const Interval& part, const Ra
 		if (distance_to_segment(middle, edges.corner(i), edges.corner(i + 1)) < far) trim(parts, raw, edges, i, distance);
 }
 
-/// The next few edges on either side often leave little or nothing for the search.
+/// The pieces that are left. The next three edges on both sides are tried first, because they often leave little or nothing to
+/// search.
 std::vector<Stretch> trimmed(const Raw& raw, const EdgeIndex& edges, Real distance)
 {
 	const std::size_t n = edges.size();
@@ -99,8 +101,8 @@ std::vector<Stretch> touching(const EdgeIndex& edges, Real distance)
 
 using Ring = std::vector<Stretch>;
 
-/// Joins pieces into rings. Along one ring they follow one another as along the outline; a second ring lies between two pieces
-/// of the first like one pair of brackets in another, so an open end waits until the piece comes that goes on from it.
+/// Joins pieces into rings. Along one ring the pieces have the order of the outline; a second ring lies between two pieces of the
+/// first, as one pair of brackets within another, so an open ring stays on a stack until a piece continues it.
 std::vector<Ring> rings_of(const std::vector<Stretch>& pieces, Real tolerance)
 {
 	const auto meet = [&](const Vector2r& a, const Vector2r& b) { return (a - b).norm() <= tolerance; };
@@ -128,7 +130,7 @@ Real length_of(const Ring& ring)
 
 bool is_closed(const Ring& ring, Real tolerance) { return (ring.back().to - ring.front().from).norm() <= tolerance; }
 
-/// The one ring of the pieces; empty if some ring stays open.
+/// The single ring that the pieces form; empty if some ring stays open.
 Ring only_ring(const std::vector<Stretch>& pieces, const Vector2r& origin, Real distance)
 {
 	std::vector<Ring> rings = rings_of(pieces, joint * distance);

@@ -18,11 +18,12 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-constexpr Real one_point = 1e-9;   // of the extent: vertices that are closer are one point [-]
-constexpr Real round_off = 1e-12;  // of the extent: below it, edges are one line [-]
-constexpr Real coarsest = 1e-8;    // of the extent: what a vertex's coordinates must resolve [-]
+constexpr Real one_point = 1e-9;   // vertices closer than this, over the extent, are one point [-]
+constexpr Real round_off = 1e-12;  // vertices closer than this to a line, over the extent, lie on it [-]
+constexpr Real coarsest = 1e-8;    // length, over the extent, that coordinates must resolve [-]
 
-/// A vertex as seen from the origin, as given, and its index there: a message after repairs still points at the right line.
+/// A vertex relative to the origin, as given, and its index in the input, so that messages after repairs still name the right
+/// line.
 struct Corner {
 	Vector2r at, given;
 	std::size_t index;
@@ -66,7 +67,7 @@ Corners without_repeats(const Corners& corners, Real tolerance)
 	return kept;
 }
 
-/// On the straight way from a to c, and not a point where the outline turns back on itself.
+/// True if b lies on the straight line between a and c, and the outline does not turn back on itself there.
 bool on_the_way(const Vector2r& a, const Vector2r& b, const Vector2r& c, Real tolerance)
 {
 	return std::abs(cross(b - a, c - a)) <= tolerance * (c - a).norm() && (b - a).dot(c - b) > 0;
@@ -84,7 +85,7 @@ Corners without_collinear(const Corners& corners, Real tolerance)
 	return kept;
 }
 
-/// Width across the line from the first corner to the one farthest from it: zero when all lie on one line.
+/// Width across the line from the first corner to the one farthest from it; zero if all lie on one line.
 Real breadth(const Corners& corners)
 {
 	const Vector2r origin = corners.front().at;
@@ -104,7 +105,7 @@ bool turns_back(const Corner& a, const Corner& b, const Corner& c)
 	return CGAL::collinear(cgal(a), cgal(b), cgal(c)) && (b.at - a.at).dot(c.at - b.at) < 0;
 }
 
-/// Names the first two edges that meet; called only once CGAL has found that some do.
+/// Names the first two edges that meet; called only after CGAL has found that some do.
 [[noreturn]] void throw_crossing(const Corners& corners)
 {
 	const std::size_t n = corners.size();
@@ -150,7 +151,7 @@ Real twice_area(const Corners& corners)
 	return sum;
 }
 
-/// Coordinates far out keep few digits of the shape; a shape that is not the one that was meant must not be taken for it.
+/// Refuses coordinates so far from the origin that rounding has changed the shape.
 void require_resolved(const Corners& corners, Real extent)
 {
 	if (corners.empty() || extent == 0) return;
@@ -167,8 +168,8 @@ void require_resolved(const Corners& corners, Real extent)
 	throw std::invalid_argument(message.str());
 }
 
-/// Zero if the numbers reach as far as they are wide. Otherwise all are within a factor of two of their middle, so that
-/// subtracting it loses nothing (Sterbenz).
+/// The middle of the numbers, or zero if it is smaller than their range. If it is larger, all numbers are within a factor of two
+/// of it, so that subtracting it has no round-off (Sterbenz).
 Real middle_of(Real least, Real most)
 {
 	const Real middle = least / 2 + most / 2;

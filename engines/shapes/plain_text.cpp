@@ -1,4 +1,4 @@
-/// Encodings are recognised by their bytes: marks, zeros at fixed places, EBCDIC's digits.
+/// Recognises encodings by their bytes: byte order marks, zeros at fixed places, EBCDIC's digits.
 #include "engines/shapes/plain_text.hpp"
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace graindrive::shapes {
 
 namespace {
 
-constexpr std::size_t most_lines = 2 * most_given;  // as many blank lines and comments as vertices
+constexpr std::size_t most_lines = 2 * most_given;  // leaves room for as many blank lines and comments as vertices
 
 bool opens_with(const std::string& bytes, const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; }
 
-/// True if in each group of `width` bytes, as far as anyone looks, all but one, always the same, are zero.
+/// True if in each group of `width` bytes, among the first 64 bytes, all are zero but one, which is always at the same place.
 bool is_wide(const std::string& bytes, std::size_t width)
 {
 	std::array<std::size_t, 4> zeros{};
@@ -42,8 +42,8 @@ bool is_utf16(const std::string& bytes)
 
 bool continues(unsigned char c) { return (c & 0xC0) == 0x80; }
 
-/// EBCDIC has its digits at F0 to F9, of which UTF-8 has none before a byte that does not continue a character. Coordinates
-/// are digits for a good part, and none of them is one in ASCII.
+/// EBCDIC has its digits at F0 to F9; in UTF-8 these bytes are always followed by a byte that continues the character. A text of
+/// coordinates consists of digits to a large part, and in EBCDIC it has no ASCII digit.
 bool is_ebcdic(const std::string& bytes)
 {
 	std::size_t digits = 0;
@@ -60,7 +60,7 @@ bool is_ebcdic(const std::string& bytes)
 	throw std::invalid_argument("an outline must be plain or UTF-8 text, got " + what + "; " + way_out);
 }
 
-/// Length of the UTF-8 character that begins with `c`, 0 if none does.
+/// Length of the UTF-8 character of more than one byte that begins with `c`; 0 if none does.
 std::size_t length_from(unsigned char c)
 {
 	if (c >= 0xC2 && c < 0xE0) return 2;

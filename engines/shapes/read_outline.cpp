@@ -1,4 +1,4 @@
-/// Files are read whole; a line that is no vertex is refused, the first one too unless it names x and y.
+/// Reads a whole file. A line that holds no vertex is refused; only the first line may name the columns x and y instead.
 #include "engines/shapes/read_outline.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::string joined(const std::vector<std::string>& lines)
 	return text;
 }
 
-/// What stands between double quotes, as tables hold a geometry.
+/// The geometries between double quotes, as tables hold them.
 std::vector<std::string> quoted_geometries(const std::string& text)
 {
 	std::vector<std::string> found;
@@ -45,7 +45,7 @@ std::string unquoted(const std::string& field)
 	return field.size() > 1 && field.front() == '"' && field.back() == '"' ? stripped(field.substr(1, field.size() - 2)) : field;
 }
 
-/// The parts of a line; none of one that is longer than two numbers can be.
+/// The fields of a line; none if the line is too long to hold two numbers.
 std::vector<std::string> fields_of(const std::string& line)
 {
 	if (line.size() > longest_line) return {};
@@ -65,7 +65,7 @@ bool is_unit(const std::string& text)
 	return text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
 }
 
-/// True for `name`, a small letter, in either case, alone or with a unit in brackets.
+/// True if the field is the letter `name`, lower or upper case, alone or with a unit in brackets.
 bool names_column(const std::string& field, char name)
 {
 	if (field.empty() || std::tolower(static_cast<unsigned char>(field[0])) != name) return false;
@@ -73,10 +73,11 @@ bool names_column(const std::string& field, char name)
 	return rest.empty() || is_unit(rest);
 }
 
-/// Names of the columns, x and y; anything else in the first line is a vertex, which must not be lost for a mistyped digit.
+/// True if the fields name the columns x and y. Any other first line is read as a vertex, so that one with a mistyped digit is
+/// not skipped as a header.
 bool is_header(std::vector<std::string> fields)
 {
-	if (fields.size() == 4 && is_unit(fields[1]) && is_unit(fields[3]))  // blanks part names and units alike
+	if (fields.size() == 4 && is_unit(fields[1]) && is_unit(fields[3]))  // blanks separate names from units too
 		fields = { fields[0] + fields[1], fields[2] + fields[3] };
 	return fields.size() == 2 && names_column(fields[0], 'x') && names_column(fields[1], 'y');
 }
@@ -95,7 +96,7 @@ Vector2r vertex_in(const std::string& line, const std::vector<std::string>& fiel
 Points vertices_in_table(const std::vector<std::string>& lines)
 {
 	const std::size_t filled = lines.size() - std::count(lines.begin(), lines.end(), "");
-	require_count(filled, most_given + 1, "lines that are not blank");  // one may be a header
+	require_count(filled, most_given + 1, "lines that are not blank");  // one more, for a header
 	Points vertices;
 	bool header_possible = true;
 	for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -107,7 +108,7 @@ Points vertices_in_table(const std::vector<std::string>& lines)
 	return vertices;
 }
 
-/// The text of a file, read only if it can end: a pipe or a device may not.
+/// The text of a regular file. Pipes and devices are refused, because reading them may never end.
 std::string contents_of(const std::string& path)
 {
 	namespace fs = std::filesystem;

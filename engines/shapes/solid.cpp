@@ -11,7 +11,7 @@ namespace graindrive::shapes {
 
 namespace {
 
-constexpr Real rounding = 2e-7;  // of the extent: what digits rounded at the sixth place may move a vertex by [-]
+constexpr Real rounding = 2e-7;  // over the extent: error of coordinates with six digits [-]
 
 Solid disk_solid(const Outline& outline)
 {
@@ -25,7 +25,7 @@ struct Sums {
 	Real polar = 0;
 };
 
-/// Integrals of 1, r and r^2 over the polygon, r seen from `point`.
+/// Integrals of 1, r and r^2 over the polygon, with r measured from `point`.
 Sums integrals(const Points& corners, const Vector2r& point)
 {
 	Sums sums;
@@ -53,7 +53,8 @@ bool is_vertical_at(const Vector2r& before, const Vector2r& here, const Vector2r
 
 }  // namespace
 
-/// The second pass, about the centroid, adds what is alike in size: about a corner it would be a difference of larger numbers.
+/// Integrates twice, first about a corner, then about the centroid, where round-off is smaller: the second moment about the
+/// centroid would otherwise be a difference of two larger numbers.
 Solid solid_of(const Outline& outline)
 {
 	if (outline.is_disk()) return disk_solid(outline);

@@ -13,7 +13,7 @@ namespace {
 namespace bg = boost::geometry;
 using Line = bg::model::linestring<bg::model::d2::point_xy<Real>>;
 
-/// The corner farthest from the middle of the box, which lies on no edge between others.
+/// The corner farthest from the middle of the box. It cannot lie on a straight line between its neighbours, so it can be kept.
 std::size_t surest_corner(const Points& corners)
 {
 	Eigen::AlignedBox<Real, 2> box;

@@ -1,7 +1,8 @@
-/// A point is closer to an edge than `reach` if it lies in the edge's capsule: two disks and the strip between them.
+/// Finds the parts of lines and arcs that are closer to an edge than `reach`: those in the edge's capsule, two disks and the
+/// strip between.
 ///
-/// The capsule is convex, so it holds one interval of a line. It also holds one of a circle that is no wider than itself: the
-/// directions in which the points of the edge are seen from the circle's centre, each with its own half width.
+/// The capsule is convex, so it contains one interval of a line. It also contains one interval of a circle that is no wider than
+/// itself: around the directions of the edge's points as seen from the circle's centre.
 #include "engines/shapes/stretch.hpp"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr Real infinity = std::numeric_limits<Real>::infinity();
 bool is_empty(const Interval& i) { return i.begin >= i.end; }
 Interval common(const Interval& a, const Interval& b) { return { std::max(a.begin, b.begin), std::min(a.end, b.end) }; }
 
-/// The smallest interval that holds both; an empty one counts for nothing.
+/// The smallest interval that contains both; an empty one is ignored.
 Interval joined(const Interval& a, const Interval& b)
 {
 	if (is_empty(a)) return b;
@@ -25,7 +26,7 @@ Interval joined(const Interval& a, const Interval& b)
 	return { std::min(a.begin, b.begin), std::max(a.end, b.end) };
 }
 
-/// Where low < value + slope s < high.
+/// The interval of s in which low < value + slope s < high.
 Interval between(Real low, Real high, Real value, Real slope)
 {
 	if (slope == 0) return value > low && value < high ? Interval{ -infinity, infinity } : Interval{ 0, 0 };
@@ -52,7 +53,7 @@ Interval line_in_capsule(const Vector2r& from, const Vector2r& heading, const Ve
 
 Real angle_between(const Vector2r& a, const Vector2r& b) { return std::atan2(cross(a, b), a.dot(b)); }
 
-/// Angles from `reference` at which a circle about (0, 0) lies in the disk of radius `reach` about `point`.
+/// The angles, measured from `reference`, at which a circle about (0, 0) lies in the disk of radius `reach` about `point`.
 Interval circle_in_disk(Real radius, const Vector2r& reference, const Vector2r& point, Real reach)
 {
 	const Real away = point.norm();
@@ -62,7 +63,8 @@ Interval circle_in_disk(Real radius, const Vector2r& reference, const Vector2r& 
 	return { middle - half, middle + half };
 }
 
-/// The same for the strip beside the edge from a to b: the angles at which the circle crosses the strip's side next to (0, 0).
+/// The same for the strip along the edge from a to b: the angles between which the circle is beyond the strip's side next to (0,
+/// 0).
 Interval circle_in_strip(Real radius, const Vector2r& reference, const Vector2r& a, const Vector2r& b, Real reach)
 {
 	const Real length = (b - a).norm();
@@ -119,7 +121,7 @@ Stretch Stretch::part(Real begin, Real end) const
 
 Eigen::AlignedBox<Real, 2> Stretch::box() const
 {
-	const Real rise = radius == 0 ? 0 : radius * (1 - std::cos(length / radius / 2));  // of the arc above its chord
+	const Real rise = radius == 0 ? 0 : radius * (1 - std::cos(length / radius / 2));  // height of the arc above its chord
 	const Vector2r margin = Vector2r::Constant(rise);
 	return { Vector2r(from.cwiseMin(to) - margin), Vector2r(from.cwiseMax(to) + margin) };
 }

@@ -1,4 +1,4 @@
-/// A reader of its own, since Boost.Geometry's drops a third number and takes a missing one for 0.
+/// Reads WKT. The reader of Boost.Geometry is not used, because it ignores a third number and takes a missing one for 0.
 #include "engines/shapes/wkt.hpp"
 
 #include <algorithm>
@@ -14,15 +14,15 @@ namespace graindrive::shapes {
 
 namespace {
 
-const char* const srid = "SRID";  // number of a coordinate system
+const char* const srid = "SRID";  // keyword of a coordinate system's number
 const char* const an_outline_is = "; an outline is one POLYGON ((x y, x y, ...))";
 
 constexpr std::size_t longest_vertex = 1000;  // [bytes]
-constexpr std::size_t most_brackets = 1000;   // an outline opens two or three
+constexpr std::size_t most_brackets = 1000;   // an outline needs two or three
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)); }
 
-/// The text with a place in it, which moves past what is taken.
+/// Reads a text from front to back.
 class Scanner {
 public:
 	explicit Scanner(const std::string& text) : text_(text) {}
@@ -51,7 +51,7 @@ public:
 				std::string("cannot read the WKT: '") + wanted + "' must stand before " + shown(rest()) + an_outline_is);
 	}
 
-	/// What stands before the next bracket of either kind.
+	/// The text up to the next bracket of either kind.
 	std::string up_to_bracket()
 	{
 		const std::size_t start = place_;
@@ -76,7 +76,7 @@ private:
 	std::size_t place_ = 0;
 };
 
-/// The text without the number of a coordinate system before it, which is no part of the shape.
+/// The text without a coordinate system's number in front, which is not part of the shape.
 std::string without_srid(const std::string& text)
 {
 	const std::string plain = stripped(text);
@@ -95,7 +95,7 @@ bool is_geometry(const std::string& word)
 	return std::find(tags.begin(), tags.end(), word) != tags.end();
 }
 
-/// Name of a geometry, and Z, M or ZM, which some write as one word with it.
+/// Name of a geometry, and its suffix Z, M or ZM if both are one word.
 struct Tag {
 	std::string geometry, dimension;
 };
@@ -111,7 +111,7 @@ Tag tag_of(const std::string& word)
 	return { word, "" };
 }
 
-/// What each vertex of a ring holds.
+/// The text of each vertex of a ring.
 using Ring = std::vector<std::string>;
 
 Ring ring(Scanner& scanner)
@@ -172,7 +172,8 @@ std::vector<std::vector<Ring>> polygons(Scanner& scanner, const Tag& tag)
 	return members;
 }
 
-/// Vertices are parted by commas, rings and members open brackets; holes and members are counted exactly once all is read.
+/// Refuses very long texts before they are read, by their commas and brackets. Exact numbers of rings and vertices are checked
+/// later.
 void require_short(const std::string& text)
 {
 	require_count(std::count(text.begin(), text.end(), '('), most_brackets, "opening brackets in its WKT",
@@ -192,10 +193,10 @@ bool is_wkt(const std::string& text)
 	const std::string plain = without_srid(text);
 	Scanner scanner(plain);
 	const std::string name = scanner.word();
-	if (name == srid && scanner.take('=')) return true;  // a second one
+	if (name == srid && scanner.take('=')) return true;  // a second number of a coordinate system is WKT too, and refused later
 	if (!is_geometry(tag_of(name).geometry)) return false;
 	const char next = scanner.next();
-	if (!is_letter(next)) return next != ',' && next != ';' && next != '\0';  // else the name of a column
+	if (!is_letter(next)) return next != ',' && next != ';' && next != '\0';  // otherwise it is the name of a column
 	const std::string word = scanner.word();
 	return word == "EMPTY" || is_dimension(word);
 }

@@ -1,4 +1,4 @@
-/// Numbers are read by std::from_chars, which takes a point for the decimals whatever the locale.
+/// Splits and reads words and numbers. std::from_chars takes a point for the decimals in every locale.
 #include "engines/shapes/words.hpp"
 
 #include <algorithm>

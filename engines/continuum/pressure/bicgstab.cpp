@@ -1,4 +1,5 @@
-/// Stabilised biconjugate gradients (van der Vorst 1992), preconditioned from the right: for comparison, since the drum paper uses them.
+/// Stabilised biconjugate gradients (van der Vorst 1992), preconditioned from the right. The drum paper uses them; here for
+/// comparison.
 #include "engines/continuum/pressure/krylov.hpp"
 
 namespace graindrive::continuum {

@@ -1,4 +1,5 @@
-/// The sparse Cholesky factor of an earlier matrix as preconditioner; it is computed again when it has become inaccurate.
+/// Preconditions with the sparse Cholesky factor of an earlier matrix, which is computed again when solves take too many
+/// iterations.
 #include <Eigen/SparseCholesky>
 
 #include "engines/continuum/pressure/open_cells.hpp"
@@ -7,7 +8,7 @@
 namespace graindrive::continuum {
 namespace {
 
-// A factor costs as much as some tens of iterations: it is kept until a solve takes more than this.
+// A factor costs as much as some tens of iterations, so it is kept until a solve takes more iterations than this.
 constexpr int most_iterations = 8;
 
 class Cholesky : public Preconditioner {
@@ -46,8 +47,8 @@ public:
 	void took(int iterations) override { aged |= iterations > most_iterations; }
 
 private:
-	// One cell of each part is tied to p = 0 by a link as strong as its others together: then the matrix is definite, and for a right side
-	// without mean the solution is still exact.
+	// One cell of each connected part gets a link to p = 0 as strong as its other links together. This makes the matrix definite;
+	// for a right side with zero mean the solution is still exact.
 	void fill(const FivePoint& matrix)
 	{
 		const int n = int(cells.places.size());

@@ -1,10 +1,10 @@
-/// Weights by Dendy (1982), and the Galerkin product, eight coarse cells at once.
+/// Interpolation weights by Dendy (1982) and the Galerkin product, computed for eight coarse cells at once.
 #include "engines/continuum/pressure/coarsening.hpp"
 
 namespace graindrive::continuum {
 namespace {
 
-// A part of the whole, 0 where all is closed.
+// part / whole, or 0 in closed cells, where whole is 0.
 Lanes share(const Lanes& part, const Lanes& whole)
 {
 	const Lanes zero = {};
@@ -17,7 +17,7 @@ Lanes positive(const Lanes& a)
 	return a > zero ? a : zero;
 }
 
-// Marks which cells take anything of coarse cells, and counts the open cells that do not.
+// Marks cells with non-zero weights to coarse cells, and counts the open cells that have none.
 inline void mark(const Links& a, std::size_t place, const Lanes& whole, Interpolation& p)
 {
 	const Lanes zero = {}, one = zero + 1;
@@ -26,7 +26,8 @@ inline void mark(const Links& a, std::size_t place, const Lanes& whole, Interpol
 	p.gaps += pack(a.inverse + place) > zero ? one - takes : zero;
 }
 
-// Between two coarse cells each counts by its links (of three kinds on a nine-point grid) towards the cell in between.
+// A cell between two coarse cells of a row: the weight of each is the sum of its links towards that side (three on a nine-point
+// grid).
 template <bool nine>
 void interpolate_rows(const Links& a, Interpolation& p, int y)
 {
@@ -61,7 +62,8 @@ void interpolate_columns(const Links& a, Interpolation& p, int y)
 	}
 }
 
-// In the middle: from all neighbours, those between coarse cells replaced by what they take.
+// A cell in the middle of four coarse cells: it is interpolated from all its neighbours, and the neighbours that lie between
+// coarse cells are in turn replaced by their own interpolation.
 template <bool nine>
 void interpolate_middles(const Links& a, Interpolation& p, int y)
 {
@@ -120,7 +122,7 @@ struct Around {
 
 	Lanes takes(int dx, int dy) const { return pack(p.takes.data() + place(dx, dy)); }
 
-	// What (dx, dy) takes of the coarse cell (k, y) + (cx, cy).
+	// The weight of the coarse cell (k, y) + (cx, cy) in the fine cell (dx, dy).
 	Lanes weight(int dx, int dy, int cx, int cy) const
 	{
 		const Lanes zero = {};
@@ -135,8 +137,9 @@ struct Around {
 	}
 };
 
-// A times the column of P that belongs to the coarse cells, at (dx, dy). Links to cells that take nothing of coarse cells are left out
-// (`gaps`: there are such cells): they would leave the coarse matrix with too small a diagonal, and so indefinite.
+// A times the column of P that belongs to the coarse cells, at (dx, dy). With `gaps` (some open cells have no weights) links to
+// such cells are left out, because the coarse diagonal, which is the sum of the links, would be too small with them, and the
+// matrix indefinite.
 template <bool nine, bool gaps>
 inline __attribute__((always_inline)) Lanes product_at(const Around& cells, int dx, int dy)
 {
@@ -179,7 +182,7 @@ inline __attribute__((always_inline)) void coarse_links(
 		}
 }
 
-// `closed`: what counts as the inverse diagonal of a closed cell.
+// `closed`: the value used as inverse diagonal of a closed cell.
 template <bool nine, bool gaps>
 void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, PlainField& rows, double closed)
 {
@@ -193,7 +196,7 @@ void link_coarse(const Links& a, const Interpolation& p, NinePoint& coarse, Plai
 			coarse_links<nine, gaps>({ a, p, y, k }, link[0], link[1], link[2], link[3]);
 			for (int n = 0; n < 4; ++n) pack(rows.row(n) + k) = link[n];
 			const Lanes own = pack(inverse + k), zero = {};
-			pack(rows.row(4) + k) = own > zero ? own : zero + closed;  // a closed cell may stand for open ones beside it
+			pack(rows.row(4) + k) = own > zero ? own : zero + closed;  // it may represent open neighbours
 		}
 		for (int n = 0; n < 5; ++n) {
 			std::fill(rows.row(n) + 2 * coarse_span.first, rows.row(n) + span.first, 0);
@@ -213,7 +216,8 @@ void interpolate_and_link(const Links& a, Interpolation& p, NinePoint& coarse, P
 		link_coarse<nine, false>(a, p, coarse, rows, closed);
 }
 
-// A coarse cell is linked to nothing if its diagonal is rounding beside the finer diagonal: then a part has shrunk to that cell.
+// Below this ratio to the finer diagonal a coarse diagonal is round-off: the cell has no links, because it represents a whole
+// connected part.
 constexpr double least_coarse_diagonal = 1e-13;
 
 void invert_diagonal(NinePoint& a)

@@ -29,7 +29,7 @@ protected:
 	}
 
 private:
-	// Returns the new r r.
+	// Steps along the direction. Returns the square of the new residual.
 	double go(double step)
 	{
 		Pack<double> sum = {};

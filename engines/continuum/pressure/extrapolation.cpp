@@ -1,4 +1,4 @@
-/// The ring of past solutions.
+/// Extrapolates the first guess of a solve from a ring buffer of earlier solutions.
 #include "engines/continuum/pressure/extrapolation.hpp"
 
 #include <algorithm>

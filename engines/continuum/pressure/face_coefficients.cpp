@@ -1,4 +1,4 @@
-/// What coefficients are refused, and how.
+/// Checks the coefficients of faces.
 #include "engines/continuum/pressure/face_coefficients.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Loading, and products of the matrix with a vector.
+/// Loads the matrix, and multiplies it with vectors.
 #include "engines/continuum/pressure/five_point.hpp"
 
 namespace graindrive::continuum {
@@ -50,7 +50,7 @@ void FivePoint::invert_diagonal()
 
 namespace {
 
-// Calls work(place, A u there) for the packs of a row.
+// Calls work(place, value of A u at that place) for the packs of a row.
 template <class Work>
 void for_products(const FivePoint& a, const Field<double>& field, int y, Work&& work)
 {
@@ -79,7 +79,7 @@ double FivePoint::multiply(const Field<double>& u, Field<double>& product) const
 double FivePoint::turn_and_multiply(const Field<double>& z, double share, Field<double>& u, Field<double>& product) const
 {
 	Pack<double> sum = {};
-	for (int y = 0; y <= shape.ny; ++y) {  // a row is turned before its lower neighbour is multiplied
+	for (int y = 0; y <= shape.ny; ++y) {  // the product of a row needs the new direction in the row above
 		if (y < shape.ny)
 			for_row(
 				shape, spans(), y, [&](std::size_t i) { pack(u.data() + i) = pack(z.data() + i) + share * pack(u.data() + i); });

@@ -1,4 +1,4 @@
-/// Division by the diagonal, the plainest preconditioner.
+/// Divides by the diagonal: the simplest preconditioner.
 #include "engines/continuum/pressure/preconditioner.hpp"
 
 namespace graindrive::continuum {

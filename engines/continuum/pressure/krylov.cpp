@@ -1,4 +1,4 @@
-/// The frame of a solve.
+/// The parts of a solve that all Krylov methods share: checks, scaling, restarts, errors.
 #include "engines/continuum/pressure/krylov.hpp"
 
 #include <algorithm>
@@ -34,7 +34,8 @@ SolveReport KrylovSolver::solve(const std::vector<double>& rhs, std::vector<doub
 	double rr = matrix.residual(f, x, r);
 	if (!std::isfinite(rr)) refuse_not_finite("the first guess of the pressure", p);
 	const int limit = 1000 + 20 * (matrix.grid().nx + matrix.grid().ny);
-	// Rounding parts the residual of the iteration from the true one: after eight decades it starts again from the true one.
+	// By round-off the residual of the iteration departs from the true one, so after eight decades the iteration restarts from
+	// the true one.
 	double before = HUGE_VAL;
 	bool again = false;
 	while (rr > target && rr < 0.25 * before && report.iterations < limit) {
@@ -44,7 +45,7 @@ SolveReport KrylovSolver::solve(const std::vector<double>& rhs, std::vector<doub
 		report.iterations += iterate(std::max(target, 1e-16 * rr), limit - report.iterations);
 		rr = matrix.residual(f, x, r);
 	}
-	if (rr > before) {  // nothing but rounding was left to work on
+	if (rr > before) {  // the last iterations only added round-off: return to the solution before
 		if (again)
 			x = best;
 		else
@@ -91,7 +92,8 @@ void KrylovSolver::refuse_not_finite(const char* what, const std::vector<double>
 	throw std::invalid_argument(std::string(what) + " is too large for double precision; use other units");
 }
 
-// f = -spacing^2 (rhs - its mean by part), since the matrix has a positive diagonal and no spacing. Returns f f.
+// f = -spacing^2 (rhs - its mean over each connected part), because the matrix has a positive diagonal and leaves out
+// 1/spacing^2. Returns the square of f.
 double KrylovSolver::load_right_side(const std::vector<double>& rhs, SolveReport& report)
 {
 	const Parts& parts = matrix.parts();

@@ -1,4 +1,4 @@
-/// The cycle.
+/// The V-cycle of multigrid.
 #include "engines/continuum/pressure/multigrid.hpp"
 
 #include "engines/continuum/pressure/coarsening.hpp"
@@ -6,7 +6,7 @@
 namespace graindrive::continuum {
 namespace {
 
-// Gauss-Seidel on the cells of a row with one parity of x; neighbours of other kinds are known to be 0.
+// Gauss-Seidel on the cells of a row with one parity of x. Only neighbours of the given kinds are read; the others are 0.
 template <int kinds>
 void relax(const Links& a, const double* f, double* u, int parity, int y)
 {
@@ -19,7 +19,8 @@ void relax(const Links& a, const double* f, double* u, int parity, int y)
 	}
 }
 
-// What has changed the residual of these cells since they were relaxed: their neighbours of some kinds, which were 0 then.
+// The residual of these cells: it was 0 after their relaxation, and neighbours of the given kinds, which were 0 then, have
+// changed it.
 template <int kinds>
 void residual(const Links& a, const double* u, double* rest, int parity, int y)
 {
@@ -29,7 +30,7 @@ void residual(const Links& a, const double* u, double* rest, int parity, int y)
 	for (int k = span.first; k < span.last; k += lanes) pack(rest + at.here + k) = gather<kinds>(at, a, u, k);
 }
 
-// The right side of a coarse grid.
+// Where the right side of a coarse grid is computed.
 struct CoarseSide {
 	const Interpolation& p;
 	PlainField& plain;  // room for rows in natural order
@@ -37,7 +38,7 @@ struct CoarseSide {
 	Field<double>& f;
 };
 
-// A row of the coarse right side P^T rest. `rows`: rest is not 0 between the coarse cells of a row.
+// Computes a row of the coarse right side P^T rest. `rows`: rest may differ from 0 between the coarse cells of a row.
 template <bool rows>
 void restrict_row(const Links& a, const double* rest, CoarseSide& to, int y)
 {
@@ -58,7 +59,7 @@ void restrict_row(const Links& a, const double* rest, CoarseSide& to, int y)
 	split_span(sums, to.a.spans[y], to.f.row(y, 0), to.f.row(y, 1));
 }
 
-// u += P correction in a row, but for the cells that the sweep relaxes first.
+// u += P correction in a row, without the cells that are relaxed first, whose old value is not used.
 template <bool rows>
 void correct(const Links& a, const Interpolation& p, const PlainField& correction, double* u, int y)
 {
@@ -84,11 +85,11 @@ void correct(const Links& a, const Interpolation& p, const PlainField& correctio
 		                    (pack(north_west + k) * pack(above + k) + pack(north_east + k) * pack(above + k + 1));
 }
 
-// Half a cycle goes through the rows once: each colour follows the one before it as closely as its neighbours allow, so that a row is
-// still in the cache when the last of them needs it.
+// Each half of a cycle goes through the rows once. Every colour follows the one before it as closely as its neighbours allow, so
+// that a row is still in the cache when the last colour is relaxed.
 
-// From u = 0: relaxes forwards, and restricts the residual. On five points cells with even x + y come first, then the others, whose
-// residual is then 0.
+// From u = 0: relaxes forwards, and restricts the residual. With five points the cells with even x + y come first, then the
+// others, whose residual is 0 afterwards.
 void descend_five(const Links& a, const double* f, double* u, double* rest, CoarseSide to)
 {
 	for (int y = -1; y <= a.grid->ny + 1; ++y) {
@@ -99,7 +100,7 @@ void descend_five(const Links& a, const double* f, double* u, double* rest, Coar
 	}
 }
 
-// Corrects, and relaxes backwards. Returns f u.
+// Adds the correction, and relaxes backwards. Returns the scalar product of f and u.
 double ascend_five(const Links& a, const double* f, double* u, const Interpolation& p, const PlainField& correction)
 {
 	Lanes product = {};
@@ -116,7 +117,8 @@ double ascend_five(const Links& a, const double* f, double* u, const Interpolati
 	return sum_of<double>(product);
 }
 
-// On nine points: coarse cells, middles of four, cells between two of a row, between two of a column, whose residual is then 0.
+// With nine points the order is: coarse cells, cells in the middle of four, cells between two of a row, cells between two of a
+// column. The residual of the last is 0 afterwards.
 void descend_nine(const Links& a, const double* f, double* u, double* rest, CoarseSide* to)
 {
 	for (int y = 0; y <= a.grid->ny + 6; y += 2) {
@@ -197,7 +199,7 @@ double Multigrid::apply(const Field<double>& r, Field<double>& z)
 	return ascend_five(a, r.data(), z.data(), next.p, next.plain);
 }
 
-// From f to the correction in `plain`.
+// Solves a coarse grid from `f`; the correction is left in `plain`.
 void Multigrid::solve_coarse(std::size_t level)
 {
 	Coarse& here = *coarse[level];

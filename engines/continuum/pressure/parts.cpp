@@ -1,4 +1,4 @@
-/// Runs of connected cells in each row, joined from row to row (union-find).
+/// Finds the connected parts of the open cells: runs in each row are joined from row to row (union-find).
 #include "engines/continuum/pressure/parts.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-/// Times the pressure solvers on a drum whose surface turns a little in every step, with warm starts, and prints a table.
+/// Times the pressure solvers on a drum whose surface turns a little in every step, starting from earlier solutions, and prints a
+/// table.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

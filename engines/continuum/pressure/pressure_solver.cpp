@@ -1,4 +1,4 @@
-/// Solvers by name.
+/// Makes a solver by its name.
 #include "engines/continuum/pressure/pressure_solver.hpp"
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-/// Lays the grid and sorts grains into it (counting sort: stable, linear).
+/// Sets up the grid and sorts grains into it (counting sort: stable, linear).
 #include "engines/loop/disks/cell_grid.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr int cells_across_strip = 80;  // two columns of rows and forces: some 30 kB
+constexpr int cells_across_strip = 80;  // rows and forces of two columns take some 30 kB
 
 }  // namespace
 
@@ -24,7 +24,7 @@ void CellGrid::lay(const DiskRow* rows, std::uint32_t n_free, const Cell<2>& cel
 		return GridAxis::over(periodic ? cell.low[k] : low[k], periodic ? cell.high[k] : high[k], periodic, r, n_free, "xy"[k]);
 	};
 	GridAxis x = along(0, reach), y = along(1, reach);
-	const double crowd = double(x.cells) * y.cells / (4.0 * n_free + 100);  // a stray grain must not cost memory
+	const double crowd = double(x.cells) * y.cells / (4.0 * n_free + 100);  // a far grain must not cost memory
 	if (crowd > 1) {
 		if (!cell.periodic[0]) x = along(0, reach * crowd);
 		if (!cell.periodic[1]) y = along(1, reach * crowd);

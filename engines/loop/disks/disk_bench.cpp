@@ -1,4 +1,4 @@
-/// Runs a scene of disks from a text file for some steps and says how fast: the measuring end of scripts/bench.
+/// Runs a scene of disks from a text file for some steps and prints the speed; scripts/bench calls it.
 #include <chrono>
 #include <ctime>
 #include <cstdio>

@@ -1,4 +1,4 @@
-/// Chooses the inner functions of the loop over disks for the processor that the program finds itself on.
+/// Chooses the inner functions of the loop over disks for the processor on which the program runs.
 #include "engines/loop/disks/disk_kernel.hpp"
 
 namespace graindrive::loop {

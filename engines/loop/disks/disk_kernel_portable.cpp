@@ -1,4 +1,4 @@
-/// The inner functions of the loop over disks, compiled for any 64-bit processor.
+/// The inner functions of the loop over disks, compiled for any 64-bit processor (x86-64).
 #include "engines/loop/disks/disk_kernel_body.hpp"
 
 namespace graindrive::loop {

@@ -1,4 +1,5 @@
-/// Search and sorting of disks: where rows lie in memory, and how springs follow their pairs to new places; and what kernels are given.
+/// Searches and sorts disks: places rows in memory, moves springs to the new places of their pairs, and prepares the kernels'
+/// input.
 #include "engines/loop/disks/disk_neighbours.hpp"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace graindrive::loop {
 
 namespace {
 
-/// Springs by owner, for the time when pairs change their numbers.
+/// Springs by the owner of the pair, kept while a search gives pairs new numbers.
 struct SpringBook {
 	std::vector<std::uint32_t> begin;
 	std::vector<std::pair<std::uint32_t, double>> entries;  // partner, slip
@@ -18,7 +19,7 @@ struct SpringBook {
 	{
 		const auto each = [&](auto&& visit) {
 			const auto by_row = [&](std::uint32_t a, std::uint32_t b, double slip) {
-				visit(std::min(a, b), std::max(a, b), slip);  // a spring has no side: its sign survives a swap of the two grains
+				visit(std::min(a, b), std::max(a, b), slip);  // in the plane a swap of the two grains keeps the sign
 			};
 			for (const Spring<2>& s : given) by_row(state.row_of[s.first], state.row_of[s.second], s.slip);
 			for (const Candidate& pair : state.pairs.candidates)
@@ -56,14 +57,14 @@ void DiskNeighbours::see_cell()
 	for (int k = 0; k < 2; ++k)
 		if (cell.periodic[k]) data.inverse_length[k] = 1 / (data.length[k] = cell.length(k));
 	if (!cell.sheared()) return;
-	data.image[0] = cell.offset, data.image[1] = 0;  // that along y is the period
+	data.image[0] = cell.offset, data.image[1] = 0;  // the image's offset along y is the period
 	data.image[2] = cell.rate, data.image[3] = cell.growth;
 }
 
 void DiskNeighbours::make_dummies()
 {
 	state.rows.resize(state.n + row_alignment);
-	state.rows[state.n] = { {}, {}, state.typical_diameter, 0, 1, 0 };  // a pair that never touches fills up packs
+	state.rows[state.n] = { {}, {}, state.typical_diameter, 0, 1, 0 };  // two grains that never touch
 	state.rows[state.n + 1] = { { 10 * state.typical_diameter, 0 }, {}, state.typical_diameter, 0, 1, 0 };
 }
 
@@ -140,7 +141,8 @@ bool DiskNeighbours::sweep(int rank)
 	return kernel.sweep(data, mine.block_begin, mine.block_end, state.n_free, mine.pair_begin);
 }
 
-/// Damping acts on the sum of all forces, so the sweep must know those of surfaces and pushes; without damping they come after it.
+/// Forces of surfaces and pushes for the sweep, which needs them with damping, because damping acts on the sum of all forces.
+/// Without damping they are applied after the sweep.
 std::vector<OutsideForce>* DiskNeighbours::outside_of_sweep()
 {
 	data.outside = nullptr;
@@ -175,7 +177,8 @@ bool DiskNeighbours::at_contact_point() const
 	return state.scene.friction && std::visit([](const auto& law) { return law.acts_at_contact_point; }, state.scene.law);
 }
 
-/// The laws that act at the contact point store a torque in the place of F_n; they never pull, so F_n follows from the whole.
+/// Laws whose force acts at the contact point store a torque in the place of F_n. Their F_n is never negative, so it follows from
+/// the magnitude of the whole force and F_t.
 ForceParts<2> DiskNeighbours::parts(std::uint32_t candidate) const
 {
 	const PairForce<double> f = pairs.force(candidate);

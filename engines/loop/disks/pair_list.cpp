@@ -1,4 +1,5 @@
-/// Lays pairs out in memory: first each thread's own, swept in order, then those that must be computed before anything moves.
+/// Places pairs in memory: first each thread's own, which the sweep computes in order, then those that must be computed before
+/// any grain moves.
 #include "engines/loop/disks/pair_list.hpp"
 
 #include "engines/loop/pair_geometry.hpp"
@@ -12,7 +13,7 @@ namespace graindrive::loop {
 namespace {
 
 constexpr std::uint32_t row_bytes = sizeof(DiskRow);
-constexpr std::uint32_t first_place = pack_alignment;  // place 0 is "no force"
+constexpr std::uint32_t first_place = pack_alignment;  // place 0 means "no force"
 
 std::uint32_t padded(std::uint32_t places) { return (places + pack_alignment - 1) / pack_alignment * pack_alignment; }
 
@@ -75,7 +76,7 @@ void PairList::place_pairs(const DiskRow* rows, std::uint32_t n_free, int thread
 			const std::uint32_t block_end = std::min((b + 1) * grains_per_block, n_free);
 			for (; c < candidates.size() && candidates[c].first < block_end; ++c) {
 				if (!candidates[c].near) continue;
-				const bool leaves_range = candidates[c].second >= range_end;  // to another thread's grain, or to a body's
+				const bool leaves_range = candidates[c].second >= range_end;  // partner of another thread, or of a body
 				if (candidates[c].wrapped || leaves_range)
 					early.push_back(c);
 				else
@@ -92,7 +93,7 @@ void PairList::place_pairs(const DiskRow* rows, std::uint32_t n_free, int thread
 	early_end = pad(next, dummy);
 }
 
-/// Fills up to a whole pack with pairs that never touch.
+/// Fills the last pack up with pairs that never touch.
 std::uint32_t PairList::pad(std::uint32_t places, PairLink dummy)
 {
 	const std::uint32_t end = padded(places);
@@ -111,7 +112,7 @@ void PairList::order_blocks(std::uint32_t n_free)
 		std::uint8_t with = 0, without = 0, alone[grains_per_block];
 		for (std::uint32_t k = 0; k < count; ++k) {
 			const bool has_pairs = owned[first + k] || partnered[first + k];
-			block_order[b].order[with] = alone[without] = std::uint8_t(k);  // one of the two is kept
+			block_order[b].order[with] = alone[without] = std::uint8_t(k);  // no branch: only one counter advances
 			with += has_pairs, without += !has_pairs;
 		}
 		block_order[b].with_pairs = with;
@@ -136,7 +137,7 @@ void PairList::fill_slots(std::uint32_t n_free)
 	slots.assign(n_free, ForceSlots{});
 	surplus.clear();
 	with_members.clear();
-	// A side with too many keeps its last slot for the fold of its surplus.
+	// A grain with more forces than slots keeps its last slot for the sum of the surplus.
 	const auto give = [&](std::uint32_t grain, std::uint32_t at, std::uint8_t have, std::uint8_t& used, bool partner) {
 		if (have <= ForceSlots::owned || used < ForceSlots::owned - 1)
 			slots[grain].at[(partner ? ForceSlots::owned : 0) + used++] = at * force_bytes;
@@ -178,7 +179,7 @@ void PairList::fold_surplus(std::uint32_t next_place)
 	for (std::size_t b = 1; b < block_fold_end.size(); ++b)
 		block_fold_end[b] = std::max(block_fold_end[b], block_fold_end[b - 1]);
 	forces.resize(next_place);
-	std::fill_n(forces.begin(), first_place, PairForce<double>{});  // no pair, no force
+	std::fill_n(forces.begin(), first_place, PairForce<double>{});  // grains without a pair read zeros here
 }
 
 void PairList::list_members(std::uint32_t n_free, std::uint32_t n_grains)

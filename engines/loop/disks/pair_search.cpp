@@ -1,4 +1,5 @@
-/// Half a list: a free grain looks at the rest of its cell and at the cells after it; members of bodies look all around themselves.
+/// Finds each pair once: a free grain is compared with the rest of its cell and with the cells after it, a member of a body with
+/// all cells around it.
 #include "engines/loop/disks/pair_search.hpp"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ struct Search {
 		if (geometry::squared_norm(d.at) < reach * reach) found.push_back({ std::min(a, b), std::max(a, b), d.wrapped, false });
 	}
 
-	/// The cells ahead of (s, f) that lie across a periodic side or in another strip.
+	/// Pairs of grain a with the cells after (s, f) that lie across a periodic side or in another strip.
 	void across_the_sides(std::uint32_t a, int s, int f) const
 	{
 		constexpr int ahead[4][2] = { { 0, 1 }, { 1, -1 }, { 1, 0 }, { 1, 1 } };
@@ -37,7 +38,7 @@ struct Search {
 			int to_s = s + step[0], to_f = f + step[1];
 			const bool over_s = to_s >= grid.slow.cells, over_f = to_f < 0 || to_f >= grid.fast.cells;
 			if ((over_s && !grid.slow.periodic) || (over_f && !grid.fast.periodic)) continue;
-			if (in.scene.cell.sheared() && (grid.fast_is_x ? over_s : over_f)) continue;  // across_the_shear
+			if (in.scene.cell.sheared() && (grid.fast_is_x ? over_s : over_f)) continue;  // across_the_shear finds these
 			const bool same_strip = !over_f && to_f / grid.strip_height == f / grid.strip_height;
 			if (same_strip && !over_s) continue;
 			to_s %= grid.slow.cells;
@@ -85,7 +86,7 @@ struct Search {
 			}
 	}
 
-	/// The grains of the last layer of cells in y with those of the first, whose images stand `offset` further along x.
+	/// Pairs of the last layer of cells in y with the first, whose images are shifted by `offset` along x.
 	void across_the_shear() const
 	{
 		const GridAxis &x = grid.fast_is_x ? grid.fast : grid.slow, &y = grid.fast_is_x ? grid.slow : grid.fast;
@@ -119,7 +120,7 @@ struct Search {
 	}
 };
 
-/// Counting sort by owner; the few pairs of one owner by insertion.
+/// Counting sort by owner, then insertion sort of the few pairs of each owner.
 void sort_by_owner(std::vector<Candidate>& pairs, std::uint32_t n_grains)
 {
 	static thread_local std::vector<std::uint32_t> begin, end;

@@ -1,8 +1,8 @@
-/// Runs a scene of spheres from a text file for some steps and says how fast.
+/// Runs a scene of spheres from a text file for some steps and prints the speed.
 ///
-/// The file: a line `periods X Y Z` (0 where not periodic, boxes begin at 0), a line `gravity X Y Z`, a line `dt DT`, a line
+/// The file has a line `periods X Y Z` (0 where not periodic, boxes begin at 0), a line `gravity X Y Z`, a line `dt DT`, a line
 /// `restitution YOUNG POISSON RESTITUTION FRICTION` or `history K_N K_T GAMMA_N GAMMA_T FRICTION`, then for each sphere
-/// `held x y z radius mass vx vy vz wx wy wz`, velocities on the step.
+/// `held x y z radius mass vx vy vz wx wy wz`, with velocities at the step, not half a step earlier.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -48,7 +48,7 @@ Scene<3> read_scene(const char* path)
 			in >> held >> one.place[0] >> one.place[1] >> one.place[2] >> one.radius >> one.mass >> one.velocity[0] >>
 				one.velocity[1] >> one.velocity[2] >> one.spin[0] >> one.spin[1] >> one.spin[2];
 			if (!in) continue;
-			if (held) one.mass = HUGE_VAL, one.body = 0;  // as frozen atoms of the peers: a contact counts with the other's mass
+			if (held) one.mass = HUGE_VAL, one.body = 0;  // as LAMMPS and LIGGGHTS do for frozen atoms
 			s.grains.push_back(one);
 		}
 	}
@@ -82,7 +82,7 @@ int main(int argc, char** argv)
 	for (int k = 0; k < portions; ++k) {
 		const auto t0 = std::chrono::steady_clock::now();
 		const auto c0 = std::clock();
-		const long steps = k ? n : n - 1;  // beginning on the step was the first
+		const long steps = k ? n : n - 1;  // begin_on_step was the first step
 		loop.step(steps);
 		const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count(),
 					 cpu = (std::clock() - c0) / double(CLOCKS_PER_SEC);

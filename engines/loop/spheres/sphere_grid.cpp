@@ -1,4 +1,4 @@
-/// Lays the grid and sorts spheres into it (counting sort: stable, linear).
+/// Sets up the grid and sorts spheres into it (counting sort: stable, linear).
 #include "engines/loop/spheres/sphere_grid.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr int cells_across_tile = 16;  // a slab of rows: 16 x 16 cells, some 50 kB
+constexpr int cells_across_tile = 16;  // the rows of 16 x 16 cells take some 50 kB
 
 int tile_size(int cells)
 {
@@ -35,7 +35,7 @@ void SphereGrid::lay(const SphereRow* rows, std::uint32_t n_free, const geometry
 			low[k] = std::min(low[k], rows[i].x[k]), high[k] = std::max(high[k], rows[i].x[k]);
 	}
 	std::stable_sort(axis, axis + 3, [&](int a, int b) { return high[a] - low[a] > high[b] - low[b]; });
-	double stretch = 1;  // a stray sphere must not cost memory
+	double stretch = 1;  // cells grow, so that one sphere far from the others does not cost memory
 	const double enough = 4.0 * n_free + 100;
 	for (int attempt = 0; attempt < 60; ++attempt, stretch *= 1.3) {
 		for (int q = 0; q < 3; ++q) {

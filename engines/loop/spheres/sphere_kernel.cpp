@@ -1,4 +1,4 @@
-/// Chooses the inner functions of the loop over spheres for the processor that the program finds itself on.
+/// Chooses the inner functions of the loop over spheres for the processor on which the program runs.
 #include "engines/loop/spheres/sphere_kernel.hpp"
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-/// The inner functions of the loop over spheres, compiled for any processor (x86-64).
+/// The inner functions of the loop over spheres, compiled for any 64-bit processor (x86-64).
 #include "engines/loop/spheres/sphere_kernel_body.hpp"
 
 namespace graindrive::loop {

@@ -1,4 +1,4 @@
-/// Search and selection of pairs of spheres: where rows lie in memory, which pairs are listed, and how springs follow their pairs.
+/// Searches and selects pairs of spheres: places rows in memory, lists pairs, and moves springs to the new places of their pairs.
 #include "engines/loop/spheres/sphere_neighbours.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr double work_of_a_sphere = 2;  // in candidates, for even shares
+constexpr double work_of_a_sphere = 2;  // work of a sphere in units of one candidate, to share work out evenly
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void SphereNeighbours::set_up()
 	make_dummies();
 }
 
-/// Two a share, so that threads do not write into one row.
+/// Rows for pairs that never touch, two for each thread's share, so that no two threads write into one row.
 void SphereNeighbours::make_dummies()
 {
 	const std::uint32_t dummies = 2 * (threads() + 1);
@@ -77,7 +77,8 @@ void SphereNeighbours::begin_search(const std::vector<Spring<3>>& given)
 	searched = true;
 }
 
-/// Springs under the numbers that their rows are about to get. A pair whose spheres change places keeps its spring with the other sign.
+/// Keeps springs under the new numbers of their rows. The sign of a spring changes where the two spheres of a pair change their
+/// order.
 void SphereNeighbours::keep_pairs(const std::vector<std::uint32_t>& new_row, const std::vector<Spring<3>>& given)
 {
 	kept.begin.assign(state.n + 2, 0);
@@ -107,7 +108,7 @@ void SphereNeighbours::find(int rank)
 	finder.find(kernel, found_cells[rank], found_cells[rank + 1], state.pairs.candidate_begin.data() + 1, found[rank]);
 }
 
-/// From counts to places; members' own pairs come last.
+/// Sums the number of candidates of each owner to the place of its first one. Pairs between members of bodies come last.
 void SphereNeighbours::gather()
 {
 	std::vector<std::uint32_t>& begin = state.pairs.candidate_begin;
@@ -120,7 +121,7 @@ void SphereNeighbours::gather()
 	share_out();
 }
 
-/// Even shares of the work.
+/// Divides the blocks among the threads so that each has about the same work.
 void SphereNeighbours::share_out()
 {
 	const std::vector<std::uint32_t>& begin = state.pairs.candidate_begin;
@@ -219,7 +220,8 @@ bool SphereNeighbours::sweep(int rank)
 	return kernel.sweep(data, shares[rank].view);
 }
 
-/// Forces that other threads computed on this one's rows come first: their owners lie before its blocks.
+/// Adds the forces that other threads computed on this thread's rows. They come first, because their owners lie before its
+/// blocks.
 void SphereNeighbours::add_incoming(int rank)
 {
 	for (std::size_t e = 0; e < incoming[rank].size(); ++e) {

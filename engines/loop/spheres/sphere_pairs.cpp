@@ -1,5 +1,5 @@
-/// Selects and lays out: first the pairs within the thread's blocks, swept in order, then those whose partner another thread moves or
-/// nobody does.
+/// Selects pairs and places them in memory: first those within the thread's blocks, which the sweep computes in order, then those
+/// whose partner another thread moves, or which is a member of a body.
 #include "engines/loop/spheres/sphere_pairs.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr std::uint32_t groups_read_ahead = 24;  // the kernels prefetch rows of links so far behind the last
+constexpr std::uint32_t groups_read_ahead = 24;  // the kernels prefetch rows for links up to this far behind the last
 
 }  // namespace
 
@@ -37,7 +37,7 @@ const KeptPair* KeptPairs::of(std::uint32_t owner, std::uint32_t partner) const
 	return nullptr;
 }
 
-/// Writes pairs one behind the other.
+/// Writes pairs into groups, one after the other.
 template <class P>
 struct SpherePairs::Layer {
 	static constexpr std::uint32_t group_size = PairGroup<P>::size;
@@ -59,7 +59,7 @@ struct SpherePairs::Layer {
 		++next;
 	}
 
-	/// The pair of a candidate; `old_place` is 1 + its place before, or 0.
+	/// Writes the pair of a candidate; `old_place` is 1 + its earlier place, or 0 if it had none.
 	void put(std::uint32_t a, Partner partner, std::uint32_t old_place)
 	{
 		const std::uint32_t b = partner.row();
@@ -91,12 +91,12 @@ struct SpherePairs::Layer {
 				if constexpr (laws::is_for_spheres(std::decay_t<decltype(law)>{}))
 					return laws::pair_constants(law, radius, mass);
 				else
-					return laws::PairConstants{};  // no kernel runs it
+					return laws::PairConstants{};  // never reached: no kernel of spheres has this law
 			},
 			s.scene.law);
 	}
 
-	/// Fills up to a whole group with pairs that never touch.
+	/// Fills the last group up with pairs that never touch.
 	void pad()
 	{
 		while (next % group_size) put(source.dummy, false, 0, 0, 0, 0, 0);
@@ -109,8 +109,8 @@ PairCounts SpherePairs::select(const Source& source)
 	return precision == Precision::double_ ? select_in<double>(source) : select_in<float>(source);
 }
 
-/// Puts the candidates of the owners [first, end) that may touch before the next selection into `chosen`. Without a branch for near or
-/// far: half of them are either, in no order that a processor could foresee.
+/// Puts the candidates of the owners [first, end) that may touch before the next selection into `chosen`. There is no branch,
+/// because about half of the candidates are near enough, in an order that a processor cannot predict.
 void SpherePairs::choose(const Source& source, std::uint32_t first, std::uint32_t end, PairCounts& counts)
 {
 	const State<3>& s = source.state;
@@ -139,7 +139,7 @@ void SpherePairs::choose(const Source& source, std::uint32_t first, std::uint32_
 	chosen.resize(n);
 }
 
-/// Puts those of the owners [first, end) into `chosen` that the state lists.
+/// Puts the candidates of the owners [first, end) that the state lists into `chosen`.
 void SpherePairs::choose_listed(const Source& source, std::uint32_t first, std::uint32_t end)
 {
 	const SpherePairState& pairs = source.state.pairs;
@@ -151,7 +151,7 @@ void SpherePairs::choose_listed(const Source& source, std::uint32_t first, std::
 			chosen.push_back({ a, listed->candidate });
 }
 
-/// Lays out the pairs of the owners [first, end), but for those with partners beyond the share: these are early.
+/// Writes the pairs of the owners [first, end). Those with partners beyond the share are put aside: they are computed early.
 template <class P>
 void SpherePairs::take_pairs_of(const Source& source, std::uint32_t first, std::uint32_t end, Layer<P>& layer, PairCounts& counts)
 {

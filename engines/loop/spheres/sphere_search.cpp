@@ -1,5 +1,5 @@
-/// Half a list: a free sphere looks at the rest of its cell and at the cells after it in its tile, run by run; in other tiles and across
-/// periodic sides it looks all around, for partners that lie behind it in memory.
+/// Finds each pair once: a free sphere is compared with the rest of its cell and with the cells after it in its tile, run by run;
+/// in other tiles and across periodic sides with all cells around it, for partners that lie behind it in memory.
 #include "engines/loop/spheres/sphere_search.hpp"
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace graindrive::loop {
 
 namespace {
 
-constexpr std::uint32_t pack_room = 16;  // the kernel may read and write a pack more
+constexpr std::uint32_t pack_room = 16;  // the kernel may read and write one pack beyond the end
 
-/// Contiguous cells of a tile that a cell looks at.
+/// Rows of contiguous cells of a tile.
 struct Run {
 	std::uint32_t begin, end;
 };
@@ -32,7 +32,7 @@ void SphereSearch::begin(const State<3>& of, const SphereGrid& sorted)
 	between_members();
 }
 
-/// Within the skin, by the nearest image.
+/// True if the nearest images of two spheres are closer than the skin.
 bool SphereSearch::near(std::uint32_t a, std::uint32_t b, bool& wrapped) const
 {
 	const SphereRow &one = state->rows[a], &other = state->rows[b];
@@ -56,7 +56,7 @@ void SphereSearch::between_members()
 		}
 }
 
-/// From the grid's corner: single precision is then good to 1e-7 of the box, which `rounding` makes up for.
+/// Positions in single precision, measured from the grid's corner. Their error is 1e-7 of the box; `rounding` allows for it.
 void SphereSearch::fill_columns()
 {
 	const std::uint32_t n_free = state->n_free;
@@ -115,7 +115,7 @@ std::uint32_t SphereSearch::cell_at(std::uint32_t row) const
 	return std::lower_bound(grid->start.begin(), grid->start.begin() + grid->cells(), row) - grid->start.begin();
 }
 
-/// Partners behind `a` in the neighbouring cells that lie in another tile or across a periodic side.
+/// Adds partners that lie behind `a` in memory, in neighbouring cells of another tile or across a periodic side.
 void SphereSearch::beyond_tile(std::uint32_t a, const CellPlace& at, std::vector<Partner>& partners) const
 {
 	const int from[3] = { at.s, at.m, at.f };
