@@ -1,4 +1,5 @@
-/// Flows with closed forms: rest, rigid rotation, decaying vortices, channels of three fluids, and a fall of grains down an incline.
+/// Flows with closed forms: rest, rigid rotation, decaying vortices, channel flow of three fluids, and grains that flow down an
+/// incline.
 #include "engines/continuum/two_phase_flow.hpp"
 
 #include <gtest/gtest.h>
@@ -75,7 +76,8 @@ TEST(TwoPhaseFlow, grains_at_rest_below_gas_stay_at_rest)
 	for (const Viscosity viscosity : { Viscosity::split, Viscosity::full }) {
 		TwoPhaseFlow flow = Drum().flow(granular(), usual_steps(viscosity), below_middle);
 		flow.advance(300);
-		// The wall's staircase bends the surfaces of equal pressure by what the tolerance of the pressure leaves, 1e-5 of g dt a step.
+		// In cells at the wall, which form a staircase, the tolerance of the pressure solver leaves velocities of 1e-5 g dt in
+		// each step.
 		EXPECT_LT(fastest(flow), 1e-4);
 		const Grid& grid = flow.grid();
 		const double rho_g = flow.fluids().density;
@@ -92,7 +94,7 @@ TEST(TwoPhaseFlow, a_hundred_thousand_steps_of_rest_make_no_flow)
 		coarse.grid = { 24, 24, 3, -36, -36, false };
 		TwoPhaseFlow flow = coarse.flow(granular(), usual_steps(viscosity), below_middle);
 		flow.advance(100000);
-		EXPECT_LT(fastest(flow), 1e-5);  // of (g d)^1/2; a layer in a drum flows at some 1
+		EXPECT_LT(fastest(flow), 1e-5);  // in (g d)^1/2; the flowing layer of a drum has about 1
 	}
 }
 
@@ -133,7 +135,8 @@ TEST(TwoPhaseFlow, a_newtonian_fluid_at_rest_has_its_own_viscosity)
 
 // ---- decay
 
-/// Largest error of u after `time` for a Taylor-Green vortex in a closed square that slips, n cells a side, steps of `share` spacing.
+/// Largest error of u after `time` for a Taylor-Green vortex in a square with slipping walls, n cells a side, time steps of
+/// `share` spacing.
 double taylor_green(int n, double share, Viscosity viscosity)
 {
 	const double nu = 0.05, time = 0.5;
@@ -158,7 +161,7 @@ double taylor_green(int n, double share, Viscosity viscosity)
 		}
 	fill_ghosts(grid, start.velocity, Edge::slips);
 	advection(grid, start.velocity, start.advection_before);
-	// p = (cos 2 pi x + cos 2 pi y)/4 of this flow
+	// This flow has the pressure p = (cos 2 pi x + cos 2 pi y)/4.
 	grid.for_cells([&](int i, int j, std::size_t c) {
 		start.potential[c] = 0.25 * (std::cos(2 * pi * grid.centre_x(i)) + std::cos(2 * pi * grid.centre_y(j)));
 	});
@@ -190,7 +193,7 @@ TEST(TwoPhaseFlow, the_implicit_viscosity_is_of_first_order_in_time)
 
 // ---- channels
 
-/// A periodic channel of height 1 between edges that hold the fluid, driven by gravity 1 along x, until steady.
+/// The steady flow in a periodic channel of height 1 with no slip at its edges, driven by gravity 1 along x.
 TwoPhaseFlow steady_channel(const Fluids& fluids, int n, double time, double dt)
 {
 	const Grid grid{ 4, n, 1.0 / n, 0, 0, true };
@@ -225,7 +228,8 @@ TEST(TwoPhaseFlow, poiseuille_flow_in_a_channel)
 
 TEST(TwoPhaseFlow, an_immersed_wall_holds_the_fluid_within_its_transition)
 {
-	// The same channel between solids: no slip is met somewhere within eps of the wall, which shifts the parabola by as much.
+	// The same channel between immersed solids: the velocity reaches that of the wall somewhere within eps of it, which shifts
+	// the parabola by as much.
 	const double eta = 0.5, h = 1.0 / 32, eps = 2 * h;
 	const Grid grid{ 4, 40, h, 0, -4 * h, true };
 	FlowSettings how;
@@ -257,21 +261,21 @@ double bingham_error(int n)
 
 TEST(TwoPhaseFlow, bingham_flow_in_a_channel_has_a_plug)
 {
-	// 1/n^2, and yield_stress/1000, by which the plug creeps
+	// The error is of order 1/n^2, and yield_stress/1000 from the creep of the plug.
 	EXPECT_LT(bingham_error(32), 4e-3);
 	EXPECT_LT(bingham_error(64), 3e-3);
 }
 
 // ---- incline
 
-/// Grains of depth H on an incline, by the inertial number I that mu(I) = tan(angle) asks for:
+/// Grains of depth H on an incline. The inertial number I follows from mu(I) = tan(angle), and the velocity is
 /// u = 2/3 I sqrt(phi g cos) (H^3/2 - (H - y)^3/2)/d, GDR MiDi (2004); p = phi rho_s g cos (H - y).
 void expect_bagnold(double h, double tolerance)
 {
 	const double angle = 0.29, depth = 20;
 	Fluids fluids = granular();
 	fluids.gas_density = 1e-3 * fluids.density;
-	fluids.gas_viscosity = 1e-3;  // thicker, it would hold them back; thinner, it would fall past them
+	fluids.gas_viscosity = 1e-3;  // a larger one would slow the grains, with a smaller one the gas would overtake them
 	const Grid grid{ 4, int(25 / h), h, 0, 0, true };
 	FlowSettings how;
 	how.viscosity = Viscosity::full;
@@ -287,7 +291,7 @@ void expect_bagnold(double h, double tolerance)
 	const auto bagnold = [&](double y) {
 		return 2.0 / 3.0 * I * std::sqrt(phi_g) * (std::pow(depth, 1.5) - std::pow(depth - y, 1.5));
 	};
-	// Start near the answer; what is left decays within 4 rho H^2/(pi^2 mu' d (rho_s p)^1/2), some 100.
+	// Starts near the solution; the difference decays within 4 rho H^2/(pi^2 mu' d (rho_s p)^1/2), some 100.
 	FlowState start = flow.state();
 	grid.for_cells([&](int i, int j, std::size_t) {
 		const double y = grid.centre_y(j);
@@ -326,7 +330,8 @@ TEST(WallLayer, takes_the_value_found_along_the_normal)
 	const Distance distance = [](double x, double y) { return 24 - std::hypot(x, y); };
 	const Domain domain(drum.grid, distance, 4, {});
 	Values values = drum.grid.zeros();
-	// A function of the angle alone is what a layer should show: here x/r, smooth on the scale of the grid.
+	// Along the normal of the wall a layer's values must not change, so they depend on the angle only: here x/r, smooth on the
+	// grid's scale.
 	drum.grid.for_cells([&](int i, int j, std::size_t c) {
 		const double x = drum.grid.centre_x(i), y = drum.grid.centre_y(j);
 		values[c] = domain.cell_open[c] >= 1 ? x / std::hypot(x, y) : 99;

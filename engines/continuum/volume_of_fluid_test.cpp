@@ -1,4 +1,5 @@
-/// Shapes that are carried round and back: area to rounding, bounds, and an error of shape that falls with the grid.
+/// Shapes that a flow carries round and back: the area is kept to round-off, fractions stay in [0, 1], and the shape's error
+/// falls with the grid's spacing.
 #include "engines/continuum/volume_of_fluid.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 /// A unit square in n by n cells.
 Grid unit_square(int n) { return { n, n, 1.0 / n, 0, 0, false }; }
 
-/// Part of each cell for which `inside`, by 16 x 16 points.
+/// The fraction of each cell in which `inside` holds, from 16 x 16 points.
 template <class Inside>
 Values painted(const Grid& grid, Inside&& inside)
 {
@@ -29,7 +30,7 @@ Values painted(const Grid& grid, Inside&& inside)
 	return fraction;
 }
 
-/// Face velocities without divergence to rounding: differences of a stream function at the nodes.
+/// Face velocities with zero divergence within round-off: differences of a stream function at the nodes.
 template <class Stream>
 FaceValues from_stream(const Grid& grid, Stream&& stream)
 {
@@ -55,7 +56,7 @@ struct Carried {
 	double shape_error, area_change, least, most;
 };
 
-/// Zalesak's (1979) disk with a slot, after one turn about the middle of the square; edges are far enough to be at rest.
+/// The slotted disk of Zalesak (1979) after one turn about the middle of the square, far from the edges, which are at rest.
 Carried zalesak(int n, double sharpness)
 {
 	const Grid grid = unit_square(n);
@@ -76,7 +77,7 @@ Carried zalesak(int n, double sharpness)
 	return { difference(grid, fraction, start), area_of(grid, fraction) / area_of(grid, start) - 1, *least, *most };
 }
 
-/// A disk drawn out by a vortex and taken back: Rider, Kothe (1998), period 2.
+/// A disk that a vortex stretches and brings back (Rider, Kothe 1998), with period 2.
 Carried vortex(int n)
 {
 	const Grid grid = unit_square(n);

@@ -1,4 +1,4 @@
-/// Images in periodic and sheared cells: against the arithmetic of the loop in two dimensions, and by what shear must leave alone.
+/// Images in periodic and sheared cells: against the arithmetic of the loop in two dimensions, and by invariants of shear.
 #include "engines/geometry/cell.hpp"
 
 #include "engines/geometry/test_support.hpp"
@@ -19,7 +19,7 @@ Cell<D> periodic_cell()
 	return cell;
 }
 
-/// Images one period up in the last axis slide along x.
+/// A sheared cell: images one period further along the last axis move along x.
 template <int D>
 Cell<D> sheared_cell(double offset = 1.234, double rate = 0.77)
 {
@@ -38,7 +38,7 @@ void in_both(Test test)
 	test(std::integral_constant<int, 3>());
 }
 
-/// Far from all sides, where round-off decides on which side a point or an image lies.
+/// Points far from all sides, because at a side round-off decides on which side a point or an image lies.
 template <int D>
 bool is_inside(const Cell<D>& cell, const Vec<D>& at)
 {
@@ -78,7 +78,7 @@ TEST(Cell, NearestImageIsTheShortestOfAllThatAreNear)
 			const Vec<D> d = random();
 			const Image<D> image = cell.nearest(d);
 			double shortest = 1e9;
-			for (int n = -12; n <= 12; ++n) {  // layers; along the others the nearest image is a matter of rounding
+			for (int n = -12; n <= 12; ++n) {  // layers; along the other axes the nearest image follows by rounding
 				Vec<D> other = d;
 				other[cell.across] -= n * cell.length(cell.across);
 				other[0] -= n * cell.offset;
@@ -154,14 +154,14 @@ TEST(Cell, AShearByAWholePeriodIsTheIdentity)
 		EXPECT_EQ(later.offset, 0);  // 7/64 and its multiples are numbers without round-off
 		later.advance(-period_in_time / 4);
 		EXPECT_EQ(later.offset, 0.75 * cell.length(0));
-		// Images that are displaced by a whole period are the same images.
+		// Displacing images by a whole period does not change them.
 		Cell<D> whole = cell;
 		whole.offset = cell.length(0);
 		RandomPoints<D> random(20);
 		for (int i = 0; i < 1000; ++i) {
 			const Vec<D> d = random();
 			Vec<D> difference = whole.nearest(d).at - cell.nearest(d).at;
-			difference[0] = std::remainder(difference[0], cell.length(0));  // half a period may come out with either sign
+			difference[0] = std::remainder(difference[0], cell.length(0));  // half a period may have either sign
 			EXPECT_LT(norm(difference), 1e-13);
 		}
 	});
@@ -186,7 +186,7 @@ TEST(Cell, UniformShearLooksTheSameFromEveryImage)
 
 TEST(Cell, AFlowThroughTheCellAgreesWithOneThatIsNeverWrapped)
 {
-	// Two points that the flow carries, one wrapped at each step: their separation stays that of free flight.
+	// Two points move with the flow, one of them wrapped at each step: their separation stays that of unwrapped motion.
 	Cell<3> cell = sheared_cell<3>(0, 0.77);
 	const double shear_rate = cell.rate / cell.length(2), dt = 0.01;
 	Vec<3> free{ 1, 3, 2 }, velocity{ 0.3, 0.2, 1.7 }, held = free, speed = velocity;
@@ -200,7 +200,7 @@ TEST(Cell, AFlowThroughTheCellAgreesWithOneThatIsNeverWrapped)
 	}
 	EXPECT_LT(norm(cell.wrap(free).at - held), 1e-11);  // 2000 steps of a round-off each
 	EXPECT_NEAR(speed[0], velocity[0] - shear_rate * (free[2] - held[2]), 1e-12);
-	EXPECT_GT(free[2] - held[2], 5 * cell.length(2));  // it did cross
+	EXPECT_GT(free[2] - held[2], 5 * cell.length(2));  // the point has crossed the cell's side
 }
 
 TEST(Cell, RefusesWhatIsNoCell)

@@ -1,4 +1,4 @@
-/// Edges and corners of random compositions: the answer's foot lies in all parts, and no common point is nearer.
+/// Edges and corners of random compositions: the point found lies in all parts, and no other common point is nearer.
 #include "engines/geometry/edge_search.hpp"
 
 #include "engines/geometry/set_algebra.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using Shapes = std::vector<SharedSurface<3>>;
 
-/// Parts that all hold the ball of radius 0.2 about the origin, so that they meet.
+/// Random parts that all contain the ball of radius 0.2 about the origin, so that they have common points.
 Shapes random_parts(RandomPoints<3>& random, int count)
 {
 	Shapes parts;
@@ -32,7 +32,7 @@ double excess(const Shapes& parts, const Vec<3>& at)
 	return most;
 }
 
-/// A point beside the edge of two parts, or anywhere near if they have none.
+/// A point beside the edge of two parts, or anywhere near them if they have no edge.
 Vec<3> beside_an_edge(const Shapes& parts, RandomPoints<3>& random)
 {
 	Vec<3> at = random();
@@ -43,7 +43,8 @@ Vec<3> beside_an_edge(const Shapes& parts, RandomPoints<3>& random)
 	return at + 0.03 * random();
 }
 
-/// The smallest distance from p to common points among samples in the ball that must have none, most of them near the foot.
+/// Samples points closer to p than the point found, most of them near it, and returns the smallest distance of a common point
+/// among them.
 double nearest_sample(const Shapes& parts, const Vec<3>& p, const Vec<3>& foot, RandomPoints<3>& random)
 {
 	double best = norm(p - foot);
@@ -69,7 +70,7 @@ TEST(EdgeSearch, NoCommonPointIsNearerThanTheAnswer)
 			const Vec<3> foot = p - found.distance * found.normal;
 			edges += found.distance != excess(parts, p);
 			EXPECT_LT(excess(parts, foot), 1e-13) << scene << " " << i;
-			// Samples come as near as they like: 1e-9 covers the foot's own round-off.
+			// 1e-9 covers the round-off of the point found.
 			EXPECT_GT(nearest_sample(parts, p, foot, random), found.distance * (1 - 1e-9)) << scene << " " << i;
 		}
 	}
@@ -82,7 +83,7 @@ TEST(Cuts, TheNearestCommonPointOfHalfSpaces)
 	EXPECT_TRUE((nearest_common_point<2>(quarter, { 0, 0 }).at == Vec<2>{ 0, 0 }));
 	EXPECT_TRUE((nearest_common_point<2>(quarter, { 3, 0 }).at == Vec<2>{ 1, 0 }));
 	EXPECT_TRUE((nearest_common_point<2>(quarter, { 3, 4 }).at == Vec<2>{ 1, 2 }));
-	// A wedge so blunt that both sides are broken, and only one is active.
+	// A wedge so blunt that the point violates both sides, but only one of them is active.
 	const std::vector<Cut<2>> blunt{ { { 1, 0 }, 0 }, { { 0.8, 0.6 }, 0 } };
 	const CutPoint<2> point = nearest_common_point<2>(blunt, { 1, -0.5 });
 	EXPECT_TRUE(point.count == 1 && (point.at == Vec<2>{ 0, -0.5 }));

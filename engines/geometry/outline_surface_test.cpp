@@ -9,7 +9,7 @@ namespace graindrive::geometry {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-const std::vector<Vec<2>> hook{ { 0, 0 }, { 3, 0 }, { 3, 2 }, { 2, 2 }, { 2, 1 }, { 0, 1 } };  // an L that lies on its back
+const std::vector<Vec<2>> hook{ { 0, 0 }, { 3, 0 }, { 3, 2 }, { 2, 2 }, { 2, 1 }, { 0, 1 } };  // an L lying on its long side
 
 /// A star whose arms differ in length, so that nothing is symmetric.
 std::vector<Vec<2>> star(int tips, double size = 1, const Vec<2>& middle = {})
@@ -22,7 +22,7 @@ std::vector<Vec<2>> star(int tips, double size = 1, const Vec<2>& middle = {})
 	return vertices;
 }
 
-/// Distance from all edges one by one; inside where the edges go round the point (their angles sum to 2 pi).
+/// Distance by testing all edges; a point is inside if the angles of the edges as seen from it sum to 2 pi.
 double by_angles(const std::vector<Vec<2>>& vertices, const Vec<2>& at)
 {
 	double nearest = 1e300, around = 0;
@@ -88,7 +88,7 @@ TEST(OutlineSurface, ADiskIsExact)
 
 TEST(SweptOutline, ASquareMakesABlock)
 {
-	// In the plane of x and z: swept along -y.
+	// The outline lies in the plane of x and z, so it is swept along -y.
 	const std::vector<Vec<2>> rectangle{ { -1, -0.5 }, { 1, -0.5 }, { 1, 0.5 }, { -1, 0.5 } };
 	const Vec<3> middle{ 1, 2, 3 };
 	const SweptOutline block(OutlineSurface(rectangle), middle, { 1, 0, 0 }, { 0, 0, 2 }, 1.4);

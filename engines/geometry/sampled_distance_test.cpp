@@ -1,4 +1,4 @@
-/// Distances from grids: what is exact, how errors fall with the spacing, what is said beside the grid.
+/// Distances interpolated from grids: exact cases, how errors fall with the spacing, and results beside the grid.
 #include "engines/geometry/sampled_distance.hpp"
 
 #include "engines/geometry/solids.hpp"
@@ -52,7 +52,7 @@ TEST(SampledDistance, PlanesAreExact)
 
 TEST(SampledDistance, ParabolasAreExactUpToTheSides)
 {
-	// Not a distance, but flat enough to be taken for one: f = (x^2 + x y)/8 - 0.1.
+	// Not a distance, but its slope is small enough to be accepted as one: f = (x^2 + x y)/8 - 0.1.
 	const auto f = [](const Vec<2>& at) { return (at[0] * at[0] + at[0] * at[1]) / 8 - 0.1; };
 	const SampledDistance<2> sampled(grid_about<2>({}, 1, 6), f);
 	RandomPoints<2> random(1);
@@ -60,7 +60,7 @@ TEST(SampledDistance, ParabolasAreExactUpToTheSides)
 		const Vec<2> at = random();
 		EXPECT_NEAR(sampled.nearest(at).distance, f(at), 1e-15);
 		EXPECT_LT(norm(sampled.nearest(at).normal - unit(Vec<2>{ 2 * at[0] + at[1], at[0] })),
-			1e-11);  // over a slope that may be small
+			1e-11);  // divided by a slope that may be small
 	}
 	EXPECT_NEAR(sampled.nearest({ 1, 1 }).distance, 0.15, 1e-15);  // the last node
 }

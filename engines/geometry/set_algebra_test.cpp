@@ -1,4 +1,4 @@
-/// Complements, intersections and unions: blocks, lenses and rims whose distance is known, and edges found by brute force.
+/// Complements, intersections and unions: blocks, lenses and rims with known distances, and edges found by brute force.
 #include "engines/geometry/set_algebra.hpp"
 
 #include "engines/geometry/rigid_motion.hpp"
@@ -56,7 +56,7 @@ void expect_block(double unit, const Vec<D>& middle)
 		EXPECT_NEAR(found.distance, exact, allowed);
 		EXPECT_NEAR(outside->nearest(middle + at).distance, -exact, allowed);
 		EXPECT_NEAR(beyond_a_side.nearest(middle + at).distance, -exact, allowed);
-		EXPECT_LT(block_distance(half, at - found.distance * found.normal), 3 * allowed);  // the nearest point is of the block
+		EXPECT_LT(block_distance(half, at - found.distance * found.normal), 3 * allowed);  // the nearest point lies on the block
 	}
 }
 
@@ -86,7 +86,7 @@ Shapes<D> two_balls()
 	return { shared(Ball<D>(-shift, 1)), shared(Ball<D>(shift, 1)) };
 }
 
-/// The distance from where they meet.
+/// The distance from the edge where the two surfaces meet.
 template <int D>
 double from_their_edge(const Vec<D>& at)
 {
@@ -104,13 +104,14 @@ void expect_lens_and_union()
 	for (int i = 0; i < 3000; ++i) {
 		const Vec<D> at = random(), left = at + 0.6 * Vec<D>::along(0), right = at - 0.6 * Vec<D>::along(0);
 		const double from_left = norm(left) - 1, from_right = norm(right) - 1, farther = std::max(from_left, from_right);
-		// The foot on the farther ball is of the other one if it lies on that one's side of x = 0.
+		// The nearest point of the farther ball is inside the other ball if it lies on that ball's side of x = 0.
 		const Vec<D> foot =
 			from_left > from_right ? left / norm(left) - 0.6 * Vec<D>::along(0) : right / norm(right) + 0.6 * Vec<D>::along(0);
 		const bool at_edge = farther > 0 && (from_left > from_right ? foot[0] < 0 : foot[0] > 0);
 		edges += at_edge;
 		EXPECT_NEAR(lens.nearest(at).distance, at_edge ? from_their_edge(at) : farther, 1e-14) << i;
-		// Inside the union: the foot on the ball that `at` is deeper in, if that foot is not inside the other.
+		// Inside the union: the nearest surface point of the ball in which `at` is deeper, unless that point is inside the other
+		// ball.
 		const double nearer = std::min(from_left, from_right);
 		const Vec<D> way_out =
 			from_left < from_right ? left / norm(left) - 0.6 * Vec<D>::along(0) : right / norm(right) + 0.6 * Vec<D>::along(0);
@@ -167,7 +168,7 @@ double distance_to_curve(const Vec<3>& at, const Curve& curve)
 
 TEST(SetAlgebra, AnObliqueCutThroughACylinderIsAnEllipse)
 {
-	// Of unit radius about z, below the plane z = x: the rim is (cos t, sin t, cos t), and there is no other edge.
+	// A cylinder of unit radius about z below the plane z = x: its only edge is the rim (cos t, sin t, cos t).
 	const SharedSurface<3> pipe = shared(Cylinder({}, { 0, 0, 1 }, 1));
 	const SharedSurface<3> below = shared(HalfSpace<3>({}, { -1, 0, 1 }));
 	const Intersection<3> stump({ pipe, below });
@@ -178,7 +179,8 @@ TEST(SetAlgebra, AnObliqueCutThroughACylinderIsAnEllipse)
 		const Vec<3> at = random();
 		const double rim = distance_to_curve(at, [](double t) { return Vec<3>{ std::cos(t), std::sin(t), std::cos(t) }; });
 		const Nearest<3> mantle = pipe->nearest(at), plane = below->nearest(at);
-		// Of both parts' feet, that on the farther (deeper) one is the answer if the other part holds (leaves) it.
+		// The nearest point of the farther part (inside: of the deeper one) is the solution if the other part contains (does not
+		// contain) it.
 		const auto foot_beside = [&](bool on_mantle) {
 			const Nearest<3>& part = on_mantle ? mantle : plane;
 			return (on_mantle ? below : pipe)->nearest(at - part.distance * part.normal).distance;
@@ -197,7 +199,7 @@ TEST(SetAlgebra, AnObliqueCutThroughACylinderIsAnEllipse)
 
 TEST(SetAlgebra, ACornerOfThreeCurvedSurfaces)
 {
-	// Three unit balls about 0.5 of each axis meet where x = y = z, |x|^2 - x = 0.75: a corner on either side.
+	// Three unit balls with centres at 0.5 on each axis meet where x = y = z, |x|^2 - x = 0.75: two corners.
 	Shapes<3> balls;
 	for (int k = 0; k < 3; ++k) balls.push_back(shared(Ball<3>(0.5 * Vec<3>::along(k), 1)));
 	const Intersection<3> pebble(balls);
@@ -226,7 +228,7 @@ TEST(SetAlgebra, MayBeNestedTurnedAndFarAway)
 TEST(SetAlgebra, GivesABoundWhereThereIsNoEdge)
 {
 	const Intersection<2> nothing({ shared(Ball<2>({ -3, 0 }, 1)), shared(Ball<2>({ 3, 0 }, 1)) });
-	EXPECT_EQ(nothing.nearest({ -1, 0 }).distance, 3);  // from the farther ball
+	EXPECT_EQ(nothing.nearest({ -1, 0 }).distance, 3);  // the distance from the farther ball
 	EXPECT_GT(nothing.nearest({ -3, 0 }).distance, 0);  // no point lies inside
 }
 
@@ -237,7 +239,7 @@ TEST(SetAlgebra, RefusesToMakeSomethingOfNothing)
 	EXPECT_TRUE(mentions(complaint([] { Complement<3>(nullptr); }), "a complement needs a shape"));
 }
 
-/// A ball that answers spheres up to a radius only.
+/// A ball that gives distances only for spheres up to some radius.
 class Doubtful : public Ball<3> {
 public:
 	explicit Doubtful(double largest) : Ball<3>({}, 1), largest_(largest) {}

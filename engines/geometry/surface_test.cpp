@@ -1,4 +1,4 @@
-/// Shapes of a user's own, and rigid motion.
+/// Shapes that a user defines, and rigid motion.
 #include "engines/geometry/section.hpp"
 #include "engines/geometry/surface.hpp"
 
@@ -11,13 +11,13 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A ring about z: a circle of radius R, thick by r. All that a shape of one's own needs.
+/// A torus about z: points within r of a circle of radius R. It shows all that a user's shape has to define.
 class Torus : public Surface<3> {
 public:
 	Torus(double ring, double thickness) : ring_(ring), thickness_(thickness) {}
 	Nearest<3> nearest(const Vec<3>& at) const override
 	{
-		const Vec<3> core = ring_ * unit(Vec<3>{ at[0], at[1], 0 });  // the circle's nearest point
+		const Vec<3> core = ring_ * unit(Vec<3>{ at[0], at[1], 0 });  // the nearest point of the circle
 		return { norm(at - core) - thickness_, unit(at - core) };
 	}
 	Bounds<3> bounds() const override

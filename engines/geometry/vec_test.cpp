@@ -1,4 +1,4 @@
-/// Vectors and orientations, in two and three dimensions by the same assertions where there are any.
+/// Vectors and orientations, in two and three dimensions with the same assertions where both exist.
 #include "engines/geometry/turn.hpp"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(Vec, VectorProductIsPerpendicularAndMeasuresTheArea)
 	EXPECT_EQ(dot(a, c), 0);
 	EXPECT_EQ(dot(b, c), 0);
 	EXPECT_EQ(squared_norm(c), squared_norm(a) * squared_norm(b) - dot(a, b) * dot(a, b));  // Lagrange; exact in these numbers
-	EXPECT_EQ(cross(Vec<2>{ 1, 2 }, Vec<2>{ -2, 0.5 }), c[2]);                              // the plane lies in space
+	EXPECT_EQ(cross(Vec<2>{ 1, 2 }, Vec<2>{ -2, 0.5 }), c[2]);                              // the same as in space
 	const Vec<2> flat = cross(2.0, Vec<2>{ 3, 4 });
 	const Vec<3> there = cross(Vec<3>{ 0, 0, 2 }, Vec<3>{ 3, 4, 0 });
 	EXPECT_TRUE(flat[0] == there[0] && flat[1] == there[1] && there[2] == 0);
@@ -121,10 +121,10 @@ TEST(Turn, AdvancesExactlyAtConstantSpin)
 		const Turn<D> at_once = start.advanced(some_spin<D>(1.9), 3.0);
 		Turn<D> in_steps = start;
 		for (int i = 0; i < 3000; ++i) in_steps = in_steps.advanced(some_spin<D>(1.9), 1e-3);
-		EXPECT_LT(norm(in_steps.apply(v) - at_once.apply(v)), 3000 * 1e-15);  // a round-off each step, not a step's error
-		// One revolution comes back: 2 pi/1.9 of time.
+		EXPECT_LT(norm(in_steps.apply(v) - at_once.apply(v)), 3000 * 1e-15);  // a round-off each step, no integration error
+		// One revolution takes the time 2 pi/1.9 and ends at the start.
 		EXPECT_LT(norm(start.advanced(some_spin<D>(1.9), 2 * pi / 1.9).apply(v) - start.apply(v)), 1e-14);
-		// The velocity of a point is omega x r: a difference over 1e-6, its own error 1e-12 |omega|^3 |r|.
+		// The velocity of a point is omega x r; the central difference over 1e-6 has an error of 1e-12 |omega|^3 |r|.
 		const double h = 1e-6;
 		const Vec<D> r = start.apply(v), ahead = start.advanced(some_spin<D>(1.9), h).apply(v),
 					 behind = start.advanced(some_spin<D>(1.9), -h).apply(v);
@@ -139,7 +139,7 @@ TEST(Turn, StaysAUnitQuaternionAndTakesTheSmallestSpins)
 	EXPECT_NEAR(turn.w * turn.w + squared_norm(turn.u), 1, 1e-15);
 	EXPECT_EQ(Turn<3>{}.advanced({ 0, 0, 0 }, 1).w, 1);
 	EXPECT_DOUBLE_EQ(Turn<3>{}.advanced({ 1e-200, 0, 0 }, 1).u[0], 0.5e-200);
-	// On both sides of where the ratio is replaced by its limit.
+	// On both sides of the angle below which the ratio is replaced by its limit.
 	for (const double angle : { 1.9e-8, 2.1e-8 }) EXPECT_DOUBLE_EQ(Turn<3>::by({ 0, angle, 0 }).u[1], std::sin(angle / 2));
 }
 

@@ -61,10 +61,11 @@ void expect_float_close(const Single& single, const Double& law)
 			float(c.effective_mass), float(c.dt) };
 		const auto rounded = single(f, float(s));
 		static_assert(std::is_same_v<decltype(rounded.normal), float>);
-		// Spring and dashpot may cancel: the error is one of the larger of the two, as in the no-damping, no-spring forces.
+		// Spring and dashpot may nearly cancel, so the error is measured against the larger of the two, found without damping and
+		// without spring.
 		const auto still = law(Kinematics<Real, Real>{ c.overlap, 0, 0, c.effective_radius, c.effective_mass, c.dt }, 0.0);
 		const Real scale = std::abs(still.normal) + std::abs(exact.normal - still.normal);
-		EXPECT_NEAR(rounded.normal, exact.normal, 2e-6 * scale);  // a dozen roundings of 6e-8
+		EXPECT_NEAR(rounded.normal, exact.normal, 2e-6 * scale);  // some twelve round-offs of 6e-8
 		EXPECT_LE(std::abs(rounded.tangential), law.mu * std::abs(rounded.normal) * (1 + 1e-6));
 		if (rounded.slipping && exact.slipping) {
 			EXPECT_NEAR(rounded.tangential, exact.tangential, 2e-6 * law.mu * scale);
@@ -89,7 +90,7 @@ TEST(HertzRestitution, reproduces_table_one_of_guillard)
 	const Real d = 1.5e-3, mass = 2500 * pi * d * d * d / 6;
 	const auto law = hertz_restitution(5e6, 0.45, 0.6, 0.5);
 	const Real k_grain = law.effective_young * 4 / 3 * std::sqrt(d / 4), k_plane = law.effective_young * 4 / 3 * std::sqrt(d / 2);
-	EXPECT_NEAR(k_grain, 81e3, 0.5e3);  // tolerances: half a unit of the printed digit
+	EXPECT_NEAR(k_grain, 81e3, 0.5e3);  // tolerances: half a unit of the last printed digit
 	EXPECT_NEAR(k_plane, 114e3, 0.5e3);
 	EXPECT_NEAR(std::sqrt(5.0) * law.damping_fraction * std::sqrt(mass / 2 * k_grain), 0.15, 0.005);
 	EXPECT_NEAR(std::sqrt(5.0) * law.damping_fraction * std::sqrt(mass * k_plane), 0.26, 0.005);

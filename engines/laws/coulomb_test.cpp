@@ -10,7 +10,7 @@ using namespace graindrive::laws;
 
 namespace {
 
-/// F_t = -(stiffness s + damping v_t) before Coulomb's bound, as the papers write the two factors.
+/// F_t = -(stiffness s + damping v_t) before Coulomb's bound, with the two factors of the papers.
 struct Tangential {
 	Real stiffness, damping;  // [N/m], [N s/m]
 };
@@ -46,7 +46,7 @@ TEST(ContactLaws, tangential_force_never_passes_coulombs_bound_and_is_the_bound_
 		}
 		++(r.slipping ? slipping : sticking);
 	});
-	EXPECT_GT(slipping, 100);  // both branches were visited
+	EXPECT_GT(slipping, 100);  // both sticking and slipping occur
 	EXPECT_GT(sticking, 100);
 }
 
@@ -68,14 +68,14 @@ TEST(ContactLaws, tangential_force_is_spring_and_dashpot_cut_at_the_bound_agains
 		const auto [k, g] = tangential(law, c.overlap, c.effective_radius, c.effective_mass);
 		const Vector3r trial = -(k * (spring + c.tangential_velocity * c.dt) + g * c.tangential_velocity);
 		const Vector3r force = trial * std::min(1.0, law.mu * std::abs(r.normal) / trial.norm());
-		const Real terms = k * spring.norm() + (k * c.dt + g) * c.tangential_velocity.norm();  // they may nearly cancel
+		const Real terms = k * spring.norm() + (k * c.dt + g) * c.tangential_velocity.norm();  // the two may nearly cancel
 		EXPECT_NEAR((r.tangential - force).norm(), 0, round_off * terms);
 		attracting += r.normal < 0;
 	});
 	EXPECT_GT(attracting, 20);  // the bound is mu |F_n| there too
 }
 
-/// Seen again without a further step, the spring that a slipping contact keeps gives the force of the bound.
+/// Evaluated again without a further step, the spring that a slipping contact keeps gives the force of Coulomb's bound.
 template <class Law>
 void expect_shortened(const Law& law)
 {

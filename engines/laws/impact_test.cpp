@@ -9,7 +9,7 @@ using namespace graindrive::laws;
 
 namespace {
 
-/// Disks of different size and mass on the way to each other at speed v; symmetric pairs would hide mixed-up indices.
+/// Two disks that approach at speed v. Their sizes and masses differ, because a symmetric pair would hide exchanged indices.
 Pair approaching(Real v)
 {
 	Pair pair({ 0.5, 1.0 }, { 0.8, 2.5 });
@@ -17,7 +17,7 @@ Pair approaching(Real v)
 	return pair;
 }
 
-/// Hertz: delta_max = (5 m v^2 / 4 k)^(2/5) with k = K_n sqrt(R_eff); stiff, so that the contact hardly turns.
+/// Hertz: delta_max = (5 m v^2 / 4 k)^(2/5) with k = K_n sqrt(R_eff). The contact is stiff, so that its normal hardly turns.
 struct Hertz {
 	Real k, depth, force, duration;
 
@@ -55,7 +55,7 @@ TEST(HertzHistory, conserves_energy_to_second_order_in_the_step)
 		const Hertz hertz(pair, k_n);
 		const Real error = collide(pair, HertzHistory<Real>{ k_n, 1, 0, 0, 0 }, hertz.duration / steps, hertz.k).energy_error;
 		if (coarser > 0) {
-			EXPECT_NEAR(coarser / error, 4, 0.4) << steps;  // a tenth: the greatest error falls between steps
+			EXPECT_NEAR(coarser / error, 4, 0.4) << steps;  // a tenth, because the greatest error lies between two steps
 		}
 		coarser = error;
 	}
@@ -64,7 +64,7 @@ TEST(HertzHistory, conserves_energy_to_second_order_in_the_step)
 TEST(HertzHistory, restitution_falls_with_speed_as_the_viscoelastic_series_says)
 {
 	// e = 1 - a + (3/5) a^2 with a = (4/5) B(3/5, 3/2) c delta_max^(3/2) / (m v), c = m gamma sqrt(R): a grows as v^(1/5).
-	// Schwager, Poeschel, Phys. Rev. E 57, 650 (1998). The force attracts at the end, as the series and LAMMPS have it.
+	// Schwager, Poeschel, Phys. Rev. E 57, 650 (1998). The force attracts at the end, as in the series and in LAMMPS.
 	const Real beta = std::tgamma(0.6) * std::tgamma(1.5) / std::tgamma(2.1), gamma = 300;
 	for (const Real v : { 0.01, 0.1, 1.0 }) {
 		Pair pair = approaching(v);
@@ -78,8 +78,8 @@ TEST(HertzHistory, restitution_falls_with_speed_as_the_viscoelastic_series_says)
 
 TEST(HertzRestitution, gives_the_restitution_asked_for_at_every_speed)
 {
-	// With b = -ln e / sqrt(ln^2 e + pi^2) and a contact that ends when the overlap does, this damping maps on a linear
-	// oscillator, so e is exact: Antypov, Elliott, EPL 94, 50004 (2011).
+	// With b = -ln e / sqrt(ln^2 e + pi^2) and a contact that ends when the overlap is zero again, the law maps on a damped
+	// linear oscillator, so e is exact: Antypov, Elliott, EPL 94, 50004 (2011).
 	for (const Real e : { 0.3, 0.6, 0.9, 1.0 })
 		for (const Real v : { 0.01, 0.1, 1.0 }) {
 			Pair pair = approaching(v);
@@ -142,7 +142,8 @@ TEST(Friction, of_a_sliding_impact_is_mu_times_the_normal_impulse_under_every_la
 	const Real mu = 0.2, stiff = 2e9, duration = Hertz(approaching(v_0), stiff).duration;
 	EXPECT_TRUE(expect_gross_sliding(HertzHistory<Real>{ stiff, 1.2 * stiff, 0, 100, mu }, mu, duration / 2000));
 	EXPECT_TRUE(expect_gross_sliding(HertzRestitution<Real>{ stiff, 0.8, 0, mu }, mu, duration / 2000));
-	// Its spring waits while slipping, so it must stick for a step whenever the bound has grown: it follows the bound, a step late.
+	// The spring of this law stays as it is while the contact slips, so the contact sticks for a step whenever the bound has
+	// grown: its force follows the bound a step late.
 	expect_gross_sliding(spring_dashpot(stiff, stiff * 2 / 7, 1, mu), mu, 1e-8);
 }
 

@@ -1,4 +1,5 @@
-/// Friction of flowing grains against its own definition, its slope against differences, and where the equations are ill-posed.
+/// The friction mu(I) of flowing grains against its definition, its slope against finite differences, and the range of well-posed
+/// equations.
 #include "engines/laws/rheology.hpp"
 
 #include <gtest/gtest.h>

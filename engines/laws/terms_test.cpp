@@ -1,4 +1,5 @@
-/// The terms of every law: forces consist of them, they derive from an energy, they dissipate, and they say where leapfrog becomes unstable.
+/// The terms of every law: forces are made of them, elastic forces derive from the energy, dashpots dissipate, and the critical
+/// step is where leapfrog becomes unstable.
 #include <gtest/gtest.h>
 
 #include "engines/laws/critical_step.hpp"
@@ -21,7 +22,7 @@ Kinematics<Real, Real> moving(Real v_n, Real v_t, Real dt)
 	return { pressed.overlap, v_n, v_t, pressed.effective_radius, pressed.effective_mass, dt };
 }
 
-/// What a contact remembers whose spring is s long.
+/// What a contact with a spring of length s remembers.
 template <class Law>
 Real remembered(const Law&, const Terms<Real>& terms, Real s)
 {
@@ -56,7 +57,7 @@ TEST(Terms, forces_consist_of_them)
 				const auto force = law(c, law.remembers_force ? Vector3r(at.tangential_stiffness * s) : s);
 				const Real normal = at.elastic - at.dashpot * c.normal_velocity;
 				if (law.acts_at_contact_point && normal < 0) {
-					EXPECT_EQ(force.normal, 0);  // which leaves no friction either
+					EXPECT_EQ(force.normal, 0);  // so there is no friction either
 					continue;
 				}
 				EXPECT_NEAR(force.normal, normal, round_off * (at.elastic + std::abs(at.dashpot * c.normal_velocity)));
@@ -79,7 +80,7 @@ TEST(Terms, dashpots_oppose_the_motion)
 	});
 }
 
-/// Energy that a contact takes up in a cycle of slip, x = A sin(w t), the second one of two [J].
+/// Energy that a contact takes up in the second of two cycles of slip x = A sin(w t) [J].
 template <class Law>
 Real loss_of_a_cycle(const Law& law, Real amplitude, Real omega)
 {
@@ -98,19 +99,20 @@ Real loss_of_a_cycle(const Law& law, Real amplitude, Real omega)
 
 TEST(Terms, a_slipping_contact_dissipates_what_coulomb_says)
 {
-	// A spring k_t in series with friction B = mu F_n, driven by A > B/k_t, encloses 4 B (A - B/k_t). Slow: dashpots do nothing.
+	// A spring k_t in series with friction B = mu F_n, driven by A > B/k_t, dissipates 4 B (A - B/k_t) in a cycle. The motion is
+	// slow, so dashpots do not matter.
 	for_every_law_damped_and_not([](const auto& law) {
 		const auto at = law.terms(pressed);
 		const Real bound = law.mu * at.elastic, yield = bound / at.tangential_stiffness;
 		for (const Real amplitude : { 1.5 * yield, 6 * yield })
 			EXPECT_NEAR(loss_of_a_cycle(law, amplitude, 1e-6) / (4 * bound * (amplitude - yield)), 1, 2e-3)
-				<< law.name;  // a spring that waits stops a step, 2 pi A / 20000, early at either end
+				<< law.name;  // a spring may stop a step, 2 pi A / 20000, early at both ends
 	});
 }
 
 TEST(Terms, a_sticking_contact_dissipates_by_its_dashpot_alone)
 {
-	// x = A sin(w t) against c_t v loses pi c_t w A^2 in a cycle, and a spring nothing.
+	// In a cycle of x = A sin(w t) a dashpot c_t v dissipates pi c_t w A^2, a spring nothing.
 	for_every_law_damped_and_not([](const auto& law) {
 		const auto at = law.terms(pressed);
 		const Real amplitude = 0.1 * law.mu * at.elastic / at.tangential_stiffness;
@@ -134,7 +136,8 @@ TEST(Terms, an_impact_gains_no_energy)
 
 namespace {
 
-/// Two bodies pressed together by a constant force, a little off their balance: how far off after some steps, over the beginning.
+/// Two bodies pressed together by a constant force start near their equilibrium. Returns the distance from it after some steps
+/// over that at the start.
 template <class Law>
 Real growth_of_normal_motion(const Law& law, Real dt)
 {
@@ -151,7 +154,7 @@ Real growth_of_normal_motion(const Law& law, Real dt)
 	return largest / start;
 }
 
-/// The same of sliding against the tangential spring, with the mass that yields there.
+/// The same for motion against the tangential spring, with the effective mass of that direction.
 template <class Law>
 Real growth_of_sliding(const Law& law, Real mass, Real dt)
 {
@@ -172,7 +175,8 @@ Real growth_of_sliding(const Law& law, Real mass, Real dt)
 
 TEST(CriticalStep, parts_stable_contacts_from_unstable_ones_under_every_law)
 {
-	// One part in a hundred beyond the limit the amplitude grows by 1.005 (strongly damped) to 1.3 a step; at the limit it stays.
+	// At 1.01 times the limit the amplitude grows by factors of 1.005 (strongly damped) to 1.3 in each step; at the limit it does
+	// not grow.
 	for_every_law_damped_and_not(
 		[](const auto& law) {
 			const auto at = law.terms(pressed);
@@ -200,9 +204,9 @@ TEST(CundallStrack, an_impact_is_elastic_and_lasts_half_a_period)
 
 TEST(HertzMindlin, restitution_is_that_of_a_contact_that_ends_when_its_force_does)
 {
-	// c_n is a fraction b of critical of the linear oscillator on which the law maps (Antypov, Elliott 2011), b = 2 sqrt(3/10) beta_n.
-	// Where that lets go at F_n = 0: e = exp(-b/w (pi - atan(2 b w/(w^2 - b^2)))), w^2 = 1 - b^2: Schwager, Poeschel, Granular
-	// Matter 9, 465 (2007). It holds at every speed.
+	// The law maps on a linear oscillator with the damping ratio b = 2 sqrt(3/10) beta_n (Antypov, Elliott 2011). If the contact
+	// of this oscillator ends at F_n = 0, e = exp(-b/w (pi - atan(2 b w/(w^2 - b^2)))) with w^2 = 1 - b^2 at every speed
+	// (Schwager, Poeschel, Granular Matter 9, 465 (2007)).
 	for (const Real beta : { 0.0, 0.05, 0.2, 0.5 })
 		for (const Real v : { 0.01, 0.3 }) {
 			Pair pair({ 0.5, 1.0 }, { 0.8, 2.5 });

@@ -1,4 +1,5 @@
-/// YADE's own laws as functions: their equations, Coulomb's bound, what is remembered, and bad input. Against YADE: loop/yade_laws_test.py.
+/// YADE's own laws as functions: their equations, Coulomb's bound, what is remembered, and bad input. loop/yade_laws_test.py
+/// compares them with YADE.
 #include "engines/laws/registry.hpp"
 
 #include <gtest/gtest.h>

@@ -80,7 +80,8 @@ TEST(Bodies, a_clump_hit_by_a_grain_shares_its_momentum_and_angular_momentum)
 	EXPECT_GT(std::abs(loop.bodies()[0].spin), 0.1);
 	const Vector3r change = totals() - before;
 	EXPECT_LT(std::hypot(change[0], change[1]), 1e-12);
-	// Friction acts at each grain's own radius, so angular momentum changes by overlap times friction: 1e-2 of a radius here.
+	// Friction acts at each grain's own radius, so angular momentum changes by overlap times friction; the overlap is 1e-2 of a
+	// radius here.
 	EXPECT_LT(std::abs(change[2]), 0.02 * bullet.mass * 2 * 0.55);
 }
 
@@ -127,8 +128,8 @@ TEST(Bodies, a_drum_of_beads_turns_and_carries_grains)
 		spread = std::max(spread, std::hypot(loop.grain(i).place[0], loop.grain(i).place[1]));
 		mean_x += loop.grain(i).place[0] / 30;
 	}
-	EXPECT_LT(spread, 5.2);  // nobody leaves through the wall
-	EXPECT_GT(mean_x, 0.1);  // counter-clockwise: the bed is carried up on the right
+	EXPECT_LT(spread, 5.2);  // no grain leaves through the wall
+	EXPECT_GT(mean_x, 0.1);  // the drum turns counter-clockwise, so the bed rises on the right
 }
 
 TEST(Bodies, forces_are_known_before_the_step_and_the_step_goes_on_from_there)

@@ -1,4 +1,4 @@
-/// A run that was interrupted equals one that was not, and a file that cannot be trusted is refused with the reason.
+/// A resumed run equals an uninterrupted one to the last bit, and a damaged file is refused with the reason.
 #include "engines/loop/checkpoint.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-/// All features of a scene crossed at small size: law, friction, rotation, gravity, damping, box, frozen grains, precision, threads.
+/// All features of a scene combined in small scenes: law, friction, rotation, gravity, damping, box, frozen grains, precision,
+/// threads.
 #include <gtest/gtest.h>
 
 #include "engines/base/temporary_file.hpp"
@@ -34,7 +35,8 @@ Scene<2> scene_with(const Features& f)
 	return s;
 }
 
-/// Calls visit(features) for each of them; damping goes with the parity of the others, so that any six of the seven are crossed.
+/// Calls visit(features) for each combination. Damping is the parity of the others, so that all combinations of any six of the
+/// seven occur.
 template <class Visitor>
 void cross(Visitor&& visit)
 {
@@ -62,7 +64,7 @@ TEST(CrossedFeatures, follow_the_plain_loop_on_threads_and_in_single_precision)
 		Scene<2> scene = scene_with(f);
 		Stepper<2> one(scene);
 		PlainLoop plain(scene);
-		scene.threads = crossed++ % 7 == 0 ? 3 : 1;  // waiting threads cost a busy machine much; 7 is prime to the others
+		scene.threads = crossed++ % 7 == 0 ? 3 : 1;  // rarely, since threads are slow on a busy machine
 		Stepper<2> three(scene);
 		scene.threads = 1;
 		scene.precision = Precision::single;
@@ -74,7 +76,7 @@ TEST(CrossedFeatures, follow_the_plain_loop_on_threads_and_in_single_precision)
 				scene, [&](std::size_t i) { return loop.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
 		};
 		EXPECT_LT(from_plain(one), 1e-11);    // round-off of 60 steps of forces of order 1e4 on masses of order 1
-		EXPECT_LT(from_plain(single), 1e-3);  // the same with 6e-8 in place of 1e-16
+		EXPECT_LT(from_plain(single), 1e-3);  // the same with a round-off of 6e-8 in place of 1e-16
 		EXPECT_TRUE(same_bits(one, three));
 	});
 }

@@ -1,4 +1,4 @@
-/// The energy ledger closes, and does not where something goes astray.
+/// The energy ledger closes, and does not close if some energy is not entered.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -13,7 +13,7 @@ using namespace graindrive::loop::test;
 
 namespace {
 
-/// The wiggle paper's law and time step: a settled bed in a box of frozen disks, with a clump that is shaken in x and free in y.
+/// A settled bed in a box of frozen disks, with a clump that is shaken in x and free in y; law and time step of the wiggle paper.
 Scene<2> wiggle_bed()
 {
 	Scene<2> scene;
@@ -63,10 +63,10 @@ double time_step_share(const Stepper<2>& loop)
 	return std::abs(e.time_step) / e.turnover;
 }
 
-// Sums of 1e4 steps over 1e3 entries, each rounded to 1e-16 of it.
+// Sums over 1e4 steps of 1e3 entries, each with a relative round-off of 1e-16.
 constexpr double round_off = 1e-12;
 
-/// A bed between walls of which one slides, one is pressed down, shaken by a clump that is free to fall.
+/// A bed between walls, one of which slides and one of which is pressed down; a clump that may fall shakes the bed.
 Scene<2> walled_bed(const ContactLaw& law)
 {
 	Scene<2> scene = crowd(12, 5, 0.5);
@@ -101,7 +101,7 @@ TEST(Energy, closes_at_the_wiggle_papers_settings)
 	EXPECT_GT(e.tangential_damping, 0);
 	EXPECT_GT(e.opening, 0);
 	EXPECT_LT(closure(loop), round_off);
-	// What leapfrog itself adds stands in its own entry. Contacts that begin within a step weigh most in it.
+	// The error of leapfrog has its own entry. Contacts that begin within a step contribute most to it.
 	EXPECT_LT(time_step_share(loop), 1e-4);
 	RecordProperty("time_step_share", std::to_string(time_step_share(loop)));
 	RecordProperty("closure", std::to_string(closure(loop) * 1e15) + "e-15");
@@ -120,7 +120,7 @@ TEST(Energy, what_leapfrog_adds_shrinks_with_the_square_of_the_time_step)
 		return time_step_share(loop);
 	};
 	const double coarse = share(1e-4), fine = share(0.25e-4);
-	EXPECT_GT(coarse / fine, 10) << coarse << " " << fine;  // 16, of runs whose collisions differ
+	EXPECT_GT(coarse / fine, 10) << coarse << " " << fine;  // 16 in theory; the two runs have different collisions
 	RecordProperty("coarse", std::to_string(coarse * 1e6) + "e-6");
 	RecordProperty("fine", std::to_string(fine * 1e6) + "e-6");
 }
@@ -141,7 +141,8 @@ TEST(Energy, closes_with_every_law_with_walls_loads_and_gravity_along_a_period)
 
 TEST(Energy, walls_give_what_their_own_motion_took)
 {
-	// Work of a pressed lid on the grains = work of the pressure less its own kinetic energy and its dashpot's heat, in the lid's own leapfrog.
+	// Work of a pressed lid on the grains = work of the pressure less the lid's kinetic energy and the dissipation in its
+	// dashpot, all as summed by the lid's leapfrog.
 	Scene<2> scene = walled_bed(hertz(0.3, 500));
 	scene.walls[0].slide = {};
 	scene.walls[1].damping = 0;
@@ -152,7 +153,8 @@ TEST(Energy, walls_give_what_their_own_motion_took)
 	const double start = lid().position;
 	loop.step(10000);
 	const double pushed = 2 * 12 * (start - lid().position), kinetic = 0.5 * 5 * lid().velocity * lid().velocity;
-	// The lid is at half steps and the ledger at steps: half a step's push, 24 v dt / 2, and the first step's.
+	// The lid's velocity is at half steps and the ledger at full steps: half a step's work of the pressure, 24 v dt / 2, and the
+	// first step's.
 	EXPECT_NEAR(loop.energy_ledger()->energies().work_of_walls, pushed - kinetic, 3 * 24 * 1e-4);
 }
 

@@ -1,4 +1,4 @@
-/// A grain that leaves the box stops the run, wherever the box ends; one that may be where it is does not.
+/// A grain that leaves the box stops the run, whatever defines the box; a grain inside does not.
 #include <gtest/gtest.h>
 
 #include "engines/base/complaint.hpp"
@@ -10,7 +10,7 @@ using namespace graindrive::loop::test;
 
 namespace {
 
-/// One grain above two frozen ones with a gap between them, falling.
+/// A grain that falls through the gap between two frozen ones.
 Scene<2> gap()
 {
 	Scene<2> s;
@@ -24,7 +24,7 @@ Scene<2> gap()
 	return s;
 }
 
-/// What the loop says when it stops within so many steps; empty if it does not.
+/// The error message of the loop if it stops within so many steps; empty if it does not.
 std::string last_words(Stepper<2>& loop, long steps)
 {
 	try {
@@ -47,14 +47,14 @@ TEST(Box, a_grain_that_falls_through_a_base_is_lost_three_diameters_below_it)
 	EXPECT_TRUE(mentions(words, "step " + std::to_string(5000 + loop.steps_done()))) << words;
 	const double lost = -0.5 - 3, g = 1, dt = 1e-3, fall = 1 - lost;
 	EXPECT_LT(loop.grain(2).place[1], lost);
-	EXPECT_GT(loop.grain(2).place[1], lost - std::sqrt(2 * g * (fall + 1)) * 101 * dt);  // looked for every 100 steps
+	EXPECT_GT(loop.grain(2).place[1], lost - std::sqrt(2 * g * (fall + 1)) * 101 * dt);  // the check runs every 100 steps
 }
 
 TEST(Box, bounds_take_the_place_of_the_base)
 {
 	Stepper<2> loop(gap());
 	Guards<2>& guards = loop.guarding();
-	guards.bounded = true;  // equal numbers: no bounds
+	guards.bounded = true;  // two equal numbers mean no bounds
 	EXPECT_EQ(last_words(loop, 5000), "");
 	EXPECT_LT(loop.grain(2).place[1], -10);
 	guards.low[1] = -20, guards.high[1] = 10;
@@ -104,7 +104,7 @@ TEST(Box, periodic_sides_have_no_end)
 
 TEST(Overlaps, grains_that_would_pass_through_each_other_between_two_looks_are_seen)
 {
-	for (const double speed : { 30., 100., 300. }) {  // half a diameter in 17 to 2 steps: between the looks at steps 0 and 100
+	for (const double speed : { 30., 100., 300. }) {  // half a diameter in 17 to 2 steps, between the checks at steps 0 and 100
 		Scene<2> s;
 		s.law = hertz();
 		s.dt = 1e-3;

@@ -1,4 +1,4 @@
-/// What comes from outside while a run goes on: pushes, other settings, moved grains, and restarts that do not notice.
+/// Changes from outside during a run: pushes, settings, moved grains; and restarts, which must not depend on when they are made.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ std::vector<double> everything(const Stepper<2>& stepper)
 	return all;
 }
 
-/// 400 grains in a periodic box and a disk of five radii that crosses it, spinning.
+/// 400 grains in a periodic box and a spinning disk of five radii that moves through it.
 Scene<2> crossed_by_a_spinning_disk()
 {
 	Scene<2> scene;
@@ -111,7 +111,7 @@ TEST(KineticEnergyOnStep, WhereAGuardTripsLeavesTheLoopAsItWas)
 	stepper.step(99);
 	const auto before = everything(stepper);
 	stepper.guarding().every = 1;
-	stepper.guarding().largest_overlap = 1e-9;  // no contact passes
+	stepper.guarding().largest_overlap = 1e-9;  // every contact raises an error
 	EXPECT_THROW(stepper.kinetic_energy_on_step(), std::runtime_error);
 	stepper.guarding() = Guards<2>{};
 	EXPECT_EQ(everything(stepper), before);
@@ -147,7 +147,7 @@ TEST(Put, AGrainFarAwayMeetsItsNewNeighbours)
 {
 	Stepper<2> stepper(crossed_by_a_spinning_disk());
 	stepper.step(100);
-	stepper.guarding().every = 0;  // it will overlap others, too
+	stepper.guarding().every = 0;  // no guards, because the grain will also overlap others
 	Grain<2> grain = stepper.grain(3);
 	const Grain<2> other = stepper.grain(200);
 	grain.place[0] = other.place[0] + 0.97 * (grain.radius + other.radius), grain.place[1] = other.place[1];
@@ -168,7 +168,8 @@ TEST(CriticalStepOfBodies, FallsAsTheRootOfTheBodysMass)
 		body.mass = scene.grains.back().mass = mass;
 		return critical_time_step_of_bodies(scene);
 	};
-	// Far lighter than a grain, the body's mass alone decides, and the dashpots of Hertz's law with it fall out.
+	// For a body much lighter than a grain the critical step depends on the body's mass only, and the dashpots of Hertz's law are
+	// negligible.
 	EXPECT_NEAR(critical(1e-8) / critical(1e-10), 10, 1e-3);
 }
 

@@ -1,4 +1,5 @@
-/// Lees-Edwards: a sheared crowd moves as one without sides, wherever its sides lie, and the ledger knows what the shear gives.
+/// Lees-Edwards cells: grains move as in an unbounded sheared system wherever the cell's sides lie, and the energy ledger holds
+/// the shear's work.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -22,10 +23,10 @@ Scene<2> sheared_crowd(int side, unsigned seed, double shear_rate, double offset
 	return s;
 }
 
-/// The same physics once more: every grain against every image of every other, and nobody is ever wrapped.
+/// An independent implementation: every grain against every image of every other, and no grain is wrapped.
 struct PlainShear {
 	Scene<2> s;
-	Vec<2> image_velocity;                          // in the step that comes
+	Vec<2> image_velocity;                          // in the next step
 	double offset, period;                          // not reduced; in y
 	std::map<std::pair<long, long>, double> slips;  // by pair and layer of the second
 
@@ -67,7 +68,7 @@ struct PlainShear {
 			const long nearest = -std::lround(x0 / width);
 			for (long right = nearest - 1; right <= nearest + 1; ++right) {
 				const Vec<2> d{ x0 + right * width, y };
-				if (geometry::squared_norm(d) > 2) continue;  // disks here have radii up to 0.51: this pair has long been apart
+				if (geometry::squared_norm(d) > 2) continue;  // disks here have radii up to 0.51, so the pair does not touch
 				const double r = length(d), overlap = a.radius + b.radius - r;
 				const auto key = std::pair(long(i * s.grains.size() + j), up);
 				if (overlap <= 0) {
@@ -89,7 +90,7 @@ struct PlainShear {
 		}
 	}
 
-	/// Largest difference of place, velocity or spin to a grain of the loop, seen from the loop's image.
+	/// Largest difference of place, velocity or spin from the loop's grains, in the loop's images.
 	double difference(const Stepper<2>& loop) const
 	{
 		Cell<2> cell = s.cell;
@@ -106,7 +107,7 @@ struct PlainShear {
 	}
 };
 
-/// Runs both and expects them to agree.
+/// Runs both implementations and expects them to agree.
 void expect_as_plain(const Scene<2>& scene, int steps, double tolerance)
 {
 	Stepper<2> loop(scene);
@@ -130,11 +131,11 @@ bool same_contacts(const std::vector<Contact<2>>& a, const std::vector<Contact<2
 
 TEST(Shear, a_crowd_moves_as_in_a_plain_loop_over_all_images)
 {
-	// Round-off of 1e-16 grows through some collisions a grain; velocities are 1 to 20.
+	// A round-off of 1e-16 grows by some collisions of each grain; velocities are 1 to 20.
 	for (const double offset : { 0.0, 6.0, 11.999 }) expect_as_plain(sheared_crowd(12, 3, 2, offset), 1000, 1e-9);
 	Scene<2> backwards = sheared_crowd(12, 4, -2, 5);
 	expect_as_plain(backwards, 1000, 1e-9);
-	Scene<2> flat = sheared_crowd(12, 5, 1);  // longer in x: the grid's slow axis is the other one
+	Scene<2> flat = sheared_crowd(12, 5, 1);  // longer in x, so that the grid's slow axis is the other one
 	for (std::size_t k = 0; k < 144; ++k) {
 		Grain<2> g = flat.grains[k];
 		g.place[0] += 12;
@@ -163,10 +164,10 @@ TEST(Shear, a_flow_that_changes_and_a_cell_that_grows_move_grains_and_images_ali
 	EXPECT_GT(std::abs(e.work_of_cell), 0.1);
 }
 
-/// The pair in the middle of the cell, and with a side between its disks, at an offset: one scene in two frames.
+/// A pair in the middle of the cell, and the same pair with the cell's side between its disks, at an offset.
 TEST(Shear, forces_and_springs_of_a_pair_do_not_know_where_the_side_is)
 {
-	for (const double rise : { 0.0, 3.0 }) {  // at rest on the side, and crossing it: then grains are wrapped on the way
+	for (const double rise : { 0.0, 3.0 }) {  // at rest at the side, and moving through it, so that grains are wrapped
 		Scene<2> inside = sheared_crowd(12, 1, 1);
 		inside.grains = { disk(6, 6), disk(6.3, 6.93) };
 		inside.grains[0].velocity = { 0.2, rise }, inside.grains[1].velocity = { -0.4, rise - 0.1 };
@@ -186,7 +187,7 @@ TEST(Shear, forces_and_springs_of_a_pair_do_not_know_where_the_side_is)
 			const auto a = one.contacts(), b = other.contacts();
 			ASSERT_EQ(a.size(), b.size()) << n;
 			if (a.empty()) continue;
-			// Round-off of places of 10 on overlaps of 0.01 under k of 2e5.
+			// Round-off of coordinates of 10 in overlaps of 0.01, with a stiffness of 2e5.
 			const double turned = a[0].first == b[0].first ? 1 : -1;
 			EXPECT_NEAR(a[0].normal, b[0].normal, 1e-7) << n;
 			EXPECT_NEAR(a[0].friction, b[0].friction, 1e-7) << n;
@@ -250,7 +251,7 @@ TEST(Shear, who_looks_leaves_no_trace)
 	EXPECT_TRUE(same_bits(seen, unseen));
 }
 
-/// At half a cell two images are equally far; each pair of a lattice must stand in the list once.
+/// At half a period two images are equally far; each pair of a lattice must be in the list exactly once.
 TEST(Shear, no_pair_is_met_twice_or_missed_at_any_offset)
 {
 	for (const double offset : { 0.0, 0.25, 0.5, 2.0, 2.5, 3.999, 4.0, 4.001, 7.75 }) {
@@ -272,7 +273,7 @@ TEST(Shear, no_pair_is_met_twice_or_missed_at_any_offset)
 	}
 }
 
-/// The images go on by more than a cell of the search in a step; frictionless and undamped, so that only places count.
+/// The images move by more than a cell of the search in a step. Without friction and damping forces depend on positions only.
 TEST(Shear, a_shear_of_more_than_a_cell_per_list_is_safe)
 {
 	for (const double cells_per_step : { 0.02, 0.3, 1.7, 40.3 }) {
@@ -280,7 +281,7 @@ TEST(Shear, a_shear_of_more_than_a_cell_per_list_is_safe)
 		s.law = hertz(0, 0), s.friction = false;
 		for (Grain<2>& g : s.grains) g.radius *= 1.01;
 		s.cell.rate = cells_per_step * 1.2 / s.dt;
-		// Places of 1e3 times the width are reduced by remainders: their round-off is 1e-12.
+		// Displacements of 1e3 times the width are reduced to the cell by remainders: their round-off is 1e-12.
 		expect_as_plain(s, 120, 1e-7);
 	}
 }
@@ -314,9 +315,10 @@ TEST(Shear, the_ledger_books_the_power_of_the_shear_and_closes_over_a_hundred_st
 	}
 	ASSERT_NEAR(steps * dt * shear_rate, 100, 1e-9);
 	const Energies& e = loop.energy_ledger()->energies();
-	EXPECT_GT(e.work_of_cell, 10 * e.stored());  // it has been spent many times over
+	EXPECT_GT(e.work_of_cell, 10 * e.stored());  // the work is much larger than the stored energy
 	EXPECT_LT(std::abs(e.residual()), 1e-6 * e.work_of_cell);
-	// Sampled at every tenth step; kinetic stress is handed over at the side in lumps: some percent of the mean over 100 strains.
+	// The stress is sampled at every tenth step, and the cell works on grains only when they cross its side: some percent over a
+	// strain of 100.
 	EXPECT_NEAR(work / e.work_of_cell, 1, 0.03);
 }
 

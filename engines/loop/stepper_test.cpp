@@ -1,4 +1,4 @@
-/// The fast loop against the plain one, conservation laws, and the promise of the same bits.
+/// The fast loop against a plain loop over all pairs, conservation laws, and the same bits on any number of threads.
 #include "engines/loop/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ double difference_from_plain(const Scene<2>& scene, int steps)
 		scene, [&](std::size_t i) { return fast.grain(i); }, [&](std::size_t i) { return plain.s.grains[i]; });
 }
 
-// Round-off of one step is 1e-16; forces of order 1e4 per unit mass over dt = 1e-4 and some tens of collision times let it grow to below this.
+// The round-off of one step, 1e-16, grows to less than this over some tens of collision times, with forces of 1e4 per unit mass
+// and dt = 1e-4.
 constexpr double grown_round_off = 1e-9;
 
 }  // namespace
@@ -56,7 +57,7 @@ TEST(Stepper, follows_the_plain_loop_around_frozen_grains_and_uneven_sizes)
 	for (std::size_t i = 0; i < 9; ++i)
 		scene.grains[i].body = 0, scene.grains[i].velocity[0] = scene.grains[i].velocity[1] = scene.grains[i].spin = 0;
 	for (std::size_t i = 9; i < scene.grains.size(); i += 7)
-		scene.grains[i].radius *= 0.4;  // small ones have many neighbours' surplus to fold
+		scene.grains[i].radius *= 0.4;  // beside small disks large ones have more contacts than slots
 	scene.bodies.push_back({});
 	EXPECT_LT(difference_from_plain(scene, 400), grown_round_off);
 }
@@ -78,7 +79,7 @@ TEST(Stepper, springs_survive_searches_and_sorting)
 	Stepper<2> a(often), b(seldom);
 	a.step(600), b.step(600);
 	EXPECT_GT(a.searches_done(), 5 * b.searches_done());
-	// Only the order of sums differs; a lost spring would show as 1e-3.
+	// Only the order of sums differs; a lost spring would change results by 1e-3.
 	EXPECT_LT(largest_difference(
 				  often, [&](std::size_t i) { return a.grain(i); }, [&](std::size_t i) { return b.grain(i); }),
 		grown_round_off);
@@ -176,7 +177,7 @@ TEST(Stepper, bounces_without_damping_keep_the_energy)
 	scene.law = hertz(0, 0);
 	scene.friction = false;
 	scene.dt = 2e-5;
-	for (Grain<2>& g : scene.grains) g.radius *= 0.85, g.mass *= 0.85 * 0.85;  // start apart
+	for (Grain<2>& g : scene.grains) g.radius *= 0.85, g.mass *= 0.85 * 0.85;  // no contacts at the start
 	Stepper<2> loop(scene);
 	const double before = loop.kinetic_energy();
 	double lowest = before, highest = 0;
@@ -185,8 +186,8 @@ TEST(Stepper, bounces_without_damping_keep_the_energy)
 		lowest = std::min(lowest, loop.kinetic_energy());
 		highest = std::max(highest, loop.kinetic_energy());
 	}
-	EXPECT_LT(lowest, 0.999 * before);  // some of it is elastic during collisions
-	// Leapfrog's error is (omega dt)^2/24 = 1e-5 of a collision's energy while it lasts and returns to zero after it.
+	EXPECT_LT(lowest, 0.999 * before);  // part of the energy is elastic during collisions
+	// During a collision leapfrog's error is (omega dt)^2/24 = 1e-5 of its energy; afterwards it is zero again.
 	EXPECT_NEAR(highest, before, 1e-4 * before);
 }
 
@@ -203,7 +204,7 @@ TEST(Stepper, single_precision_stays_near_double_and_does_not_care_where_a_grain
 		loop.step(200);
 		return loop.grain(0).place[0] - shift;
 	};
-	// Contacts see differences of double positions; what is left is float round-off, 6e-8 of an overlap's forces.
+	// Differences of positions are computed in double precision; only the round-off of forces, 6e-8, is in single precision.
 	EXPECT_NEAR(far_from_near(0), far_from_near(300), 1e-6);
 	Scene<2> scene = crowd(10, 9);
 	Stepper<2> twice(scene);
@@ -242,7 +243,7 @@ TEST(Stepper, a_deep_overlap_stops_the_run_with_step_and_grain)
 	Scene<2> scene;
 	scene.law = hertz();
 	scene.dt = 1e-4;
-	scene.threads = 2;  // the other thread must learn of it too
+	scene.threads = 2;  // the other thread must stop too
 	scene.grains = { disk(0, 0), disk(0.7, 0) };
 	Stepper<2> deep(scene);
 	try {

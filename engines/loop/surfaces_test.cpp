@@ -1,4 +1,4 @@
-/// Grains at solids, disks and spheres: depth at rest, impacts against Hertz's equations, solids that turn or are free, images, refusals.
+/// Disks and spheres at solids: depth at rest, impacts against Hertz's equations, solids that turn or are free, images, refusals.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -44,10 +44,10 @@ Scene<D> scene_of(const Grain<D>& grain, const SharedSurface<D>& shape, const Ri
 	return s;
 }
 
-/// delta of m g = 4/3 E_eff sqrt(R) delta^(3/2), E_eff = E/(2 (1 - nu^2)).
+/// The overlap delta from m g = 4/3 E_eff sqrt(R) delta^(3/2), E_eff = E/(2 (1 - nu^2)).
 double depth_at_rest(double weight) { return std::pow(weight / (4.0 / 3 * 2e4 / (2 * 0.91) * std::sqrt(radius)), 2.0 / 3); }
 
-/// Lets a grain come to rest that begins at the surface; how deep it then lies.
+/// Lets a grain that begins at the surface come to rest, and returns its overlap.
 template <int D>
 double depth_of_rest(const SharedSurface<D>& shape, const Vec<D>& surface, const Vec<D>& outward)
 {
@@ -89,11 +89,12 @@ Totals<D> totals(Stepper<D>& loop)
 	if constexpr (D == 2)
 		sum.angular += b.inertia * b.spin;
 	else
-		sum.angular += b.inertia[0] * b.spin;  // of a ball
+		sum.angular += b.inertia[0] * b.spin;  // moment of inertia of a ball
 	return sum;
 }
 
-/// A grain hits a free solid off its middle; momentum stays, angular momentum changes by the torque of half the overlap, delta/2 n x F_t.
+/// A grain hits a free solid away from its middle. Momentum is conserved, angular momentum changes by the torque delta/2 n x F_t,
+/// because forces on the two act at points half an overlap apart.
 template <int D>
 void meet_free(const SharedSurface<D>& shape, Grain<D> grain, const RigidBody<D>& body)
 {
@@ -109,17 +110,18 @@ void meet_free(const SharedSurface<D>& shape, Grain<D> grain, const RigidBody<D>
 	const Totals<D> after = totals(loop);
 	EXPECT_GT(norm(loop.bodies()[0].velocity - body.velocity), 0.1);
 	EXPECT_GT(length(by_overlap), 1e-6);
-	// Some thousand steps with round-offs of 1e-16 of numbers of order 1.
+	// Some thousand steps with round-offs of 1e-16 in numbers of order 1.
 	EXPECT_LT(norm(after.momentum - before.momentum), 1e-12);
 	EXPECT_LT(length(after.angular - before.angular - by_overlap), 1e-12);
 }
 
 constexpr double k_n = 2e5, k_t = 2.46e5;
 
-/// Depth, spring, v_n into the surface, v_t of the grain's surface against it.
+/// Overlap, spring, velocity into the surface, tangential velocity of the grain's surface against it.
 using Impact = std::array<double, 4>;
 
-/// Without damping and slip: m d2(delta)/dt2 = -k_n sqrt(R) delta^(3/2),  m/(1 + m R^2/I) dv_t/dt = -k_t sqrt(R delta) s,  ds/dt = v_t.
+/// Equations of motion without damping and slip:
+/// m d2(delta)/dt2 = -k_n sqrt(R) delta^(3/2),  m/(1 + m R^2/I) dv_t/dt = -k_t sqrt(R delta) s,  ds/dt = v_t.
 Impact slope(const Impact& y, double mass, double spin_response)
 {
 	const double hertz = std::sqrt(radius * std::max(y[0], 0.0));
@@ -143,7 +145,7 @@ Impact integrated(Impact y, double time, double mass, double spin_response)
 	return y;
 }
 
-/// A sphere that spins and moves obliquely, at a plane that lies obliquely, touches at time 0.
+/// A spinning sphere that touches an oblique plane at time 0, with an oblique velocity.
 Scene<3> oblique_impact(double mu, const Vec<3>& n)
 {
 	Scene<3> s = scene_of<3>(grain_at<3>((radius + 1e-13) * n), shared(HalfSpace<3>({}, n)));
@@ -162,7 +164,7 @@ TEST(Surfaces, a_sphere_at_rest_sinks_as_deep_as_hertz_says)
 	const Grain<3> g = grain_at<3>({});
 	const double depth = depth_at_rest(g.mass);
 	const Vec<3> up{ 0, 0, 1 }, oblique = geometry::unit(Vec<3>{ 1, 2, 2 });
-	// Damped for four seconds at a rate of ten; what is left is round-off of places of order 1.
+	// Damped for four seconds at a rate of ten per second; the rest is round-off of coordinates of order 1.
 	EXPECT_NEAR(depth_of_rest<3>(shared(HalfSpace<3>({ 1, 1, 1 }, oblique)), { 1, 1, 1 }, oblique), depth, 1e-13);
 	const auto cylinder = shared(Cylinder({ 0, 0, 0 }, { 0, 1, 0 }, 3));
 	EXPECT_NEAR(depth_of_rest<3>(cylinder, { 0, 0.4, 3 }, up), depth, 1e-13);
@@ -185,11 +187,11 @@ TEST(Surfaces, a_disk_at_rest_sinks_as_deep_as_hertz_says)
 TEST(Surfaces, an_oblique_impact_of_a_spinning_sphere_follows_the_equations_of_motion)
 {
 	const Vec<3> n = geometry::unit(Vec<3>{ 1, -2, 2 });
-	Scene<3> s = oblique_impact(10, n);  // so rough that it sticks
+	Scene<3> s = oblique_impact(10, n);  // so much friction that the contact sticks
 	s.dt = 5e-7;
 	const Grain<3> start = s.grains[0];
 	const Vec<3> v_t = tangential_part(start.velocity, n) + cross(radius * start.spin, -1.0 * n);
-	for (const int steps : { 8000, 26000 }) {  // on the way in, and past the deepest point at 10 ms
+	for (const int steps : { 8000, 26000 }) {  // before and after the deepest point at 10 ms
 		Stepper<3> loop(s);
 		loop.begin_on_step();
 		loop.step(steps - 1);
@@ -198,7 +200,8 @@ TEST(Surfaces, an_oblique_impact_of_a_spinning_sphere_follows_the_equations_of_m
 		const Vec<3> velocity = 0.5 * (at.velocity + loop.grain(0).velocity), spin = 0.5 * (at.spin + loop.grain(0).spin);
 		const Impact end = integrated({ 0, 0, -dot(start.velocity, n), norm(v_t) }, steps * s.dt, start.mass, 2.5);
 		const Vec<3> along = v_t / norm(v_t), change = (end[3] - norm(v_t)) / 3.5 * along;
-		// Leapfrog: (omega dt)^2/24 = 4e-10 of velocities of order 1, with omega = 186/s; spins weigh five times as much.
+		// Leapfrog's error is (omega dt)^2/24 = 4e-10 of velocities of order 1, with omega = 186/s; that of spins is five times
+		// as large.
 		EXPECT_NEAR(radius - dot(at.place, n), end[0], 1e-9);
 		EXPECT_LT(norm(velocity - (tangential_part(start.velocity, n) + change - end[2] * n)), 2e-9);
 		EXPECT_LT(norm(spin - (start.spin + 2.5 / radius * cross(change, n))), 1e-8) << steps;
@@ -225,7 +228,7 @@ TEST(Surfaces, a_sphere_that_slides_all_through_an_impact_changes_as_walton_says
 	}
 	const Grain<3> end = loop.grain(0);
 	EXPECT_NEAR(dot(end.velocity, n), -dot(start.velocity, n), 1e-4);  // e = 1, to (omega dt)^2 = 4e-6
-	// Walton (1993): the tangential impulse is mu times the normal one, against the slip.
+	// Walton (1993): the tangential impulse is mu times the normal one, opposite to the slip.
 	const Vec<3> kick = -mu * normal_impulse / start.mass * (v_t / norm(v_t));
 	EXPECT_LT(norm(tangential_part(end.velocity - start.velocity, n) - kick), 1e-12);
 	EXPECT_LT(norm(end.spin - start.spin - 2.5 / radius * cross(kick, n)), 1e-11);
@@ -239,7 +242,8 @@ TEST(Surfaces, a_moving_plane_drags_a_sphere_along_until_it_rolls_at_two_seventh
 	s.gravity = { 0, 0, -10 };
 	Stepper<3> loop(s);
 	loop.step(30000);
-	// Angular momentum about the line of contact is kept but for the torque of the overlap, a hundredth of a radius at most.
+	// Angular momentum about the line of contact is conserved except for the torque of the overlap, whose lever is a hundredth of
+	// a radius at most.
 	EXPECT_LT(norm(loop.grain(0).velocity - 2.0 / 7 * belt.velocity), 5e-3);
 	const Vec<3> rolling = belt.velocity - tangential_part(loop.grain(0).velocity, { 0, 0, 1 });
 	EXPECT_LT(norm(cross(loop.grain(0).spin, Vec<3>{ 0, 0, -radius }) - rolling), 1e-6);
@@ -247,7 +251,8 @@ TEST(Surfaces, a_moving_plane_drags_a_sphere_along_until_it_rolls_at_two_seventh
 
 TEST(Surfaces, two_cylinders_that_spin_turn_the_sphere_between_them)
 {
-	// In the groove of two equal rollers a sphere ends up turning the other way, with the speed of their surfaces, and stays.
+	// A sphere in the groove between two equal rollers ends up turning in the opposite sense with the surface speed of the
+	// rollers.
 	Scene<3> s = scene_of<3>(grain_at<3>({ 0, 0, 1.13 }), shared(Cylinder({}, { 0, 1, 0 }, 1.0)));
 	s.bodies[0].place = { -1.01, 0, 0 }, s.bodies[0].spin = { 0, 0.7, 0 };
 	s.bodies.push_back(s.bodies[0]);
@@ -258,7 +263,7 @@ TEST(Surfaces, two_cylinders_that_spin_turn_the_sphere_between_them)
 	Stepper<3> loop(s);
 	loop.step(200000);
 	const Grain<3> g = loop.grain(0);
-	const double depth = loop.surface_contacts()[0].overlap / 2;  // of the point whose velocity counts
+	const double depth = loop.surface_contacts()[0].overlap / 2;  // depth of the point whose velocity is used
 	EXPECT_NEAR(g.spin[1], -0.7 * (1 - depth) / radius, 1e-9);
 	EXPECT_LT(norm(g.velocity), 1e-9);
 	EXPECT_NEAR(g.place[0], 0, 1e-9);
@@ -328,12 +333,13 @@ TEST(Surfaces, a_solid_in_a_periodic_cell_meets_the_nearest_image)
 	const auto across = run(0), inside = run(-3), behind = run(12);
 	EXPECT_GT(across[0][0], 0);  // it bounced
 	for (int k = 0; k < 4; ++k) {
-		EXPECT_LT(norm(across[k] - inside[k]), 1e-10);  // round-off of places of order 10 in forces of order 1e4
+		EXPECT_LT(norm(across[k] - inside[k]), 1e-10);  // round-off of coordinates of order 10 in forces of order 1e4
 		EXPECT_LT(norm(across[k] - behind[k]), 1e-10);
 	}
 }
 
-/// The push carries it 2e-4 d a step, the plane holds it: it goes nowhere, so its pairs stay selected.
+/// The push alone would move the sphere by 2e-4 d a step, but the plane holds it. It does not move, so the selection of pairs
+/// stays valid.
 TEST(Surfaces, a_sphere_that_is_pressed_on_a_plane_counts_as_at_rest)
 {
 	Scene<3> s = scene_of<3>(grain_at<3>({ 0, 0, radius }), shared(HalfSpace<3>({}, { 0, 0, 1 })));
@@ -341,7 +347,7 @@ TEST(Surfaces, a_sphere_that_is_pressed_on_a_plane_counts_as_at_rest)
 	s.dt = 1e-3;
 	Stepper<3> loop(s);
 	loop.step(1);
-	for (int k = 0; k < 20000; ++k) {  // as slowly as it does not bounce
+	for (int k = 0; k < 20000; ++k) {  // lowers the sphere so slowly that it does not bounce
 		loop.set_pushes({ { 0, { 0, 0, -100 * std::min(1.0, k / 10000.0) }, {} } });
 		loop.step(1);
 	}

@@ -1,4 +1,4 @@
-/// Barriers let nobody pass early and leave nobody behind, whether threads look, sleep, or are more than the cores.
+/// No thread passes a barrier early or stays behind, whether threads poll, sleep, or outnumber the cores.
 #include "engines/loop/thread_team.hpp"
 
 #include <gtest/gtest.h>

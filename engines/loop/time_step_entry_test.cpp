@@ -1,12 +1,13 @@
-/// The ledger's entry `time step` is the leapfrog's own error, in its closed form.
+/// The ledger's entry `time step` is leapfrog's energy error, which has a closed form.
 ///
-/// The work of an elastic force F(delta) = U'(delta), summed by the trapezoid over steps, differs from -Delta U by Delta delta^3 F''/12.
-/// Over an impact, with dv/dt = (F + damping)/m, that sums to
+/// The work of an elastic force F(delta) = U'(delta), summed by the trapezoid over steps, differs from -Delta U by Delta delta^3
+/// F''/12. Over an impact, with dv/dt = (F + damping)/m, that sums to
 ///
 ///   dt^2/12 [F' v^2 + F^2/m] - dt^2/6 sum F' c v^2 dt/m,
 ///
-/// of which the bracket is 0 before and after. What stays is a share (omega dt)^2/6 of the energy that the dashpot dissipates, and, where the
-/// contact begins and ends within a step and F'' is not finite, noise without a mean that falls as dt^(5/2) or faster.
+/// in which the bracket is 0 before and after the impact. What remains is (omega dt)^2/6 of the energy that the dashpot
+/// dissipates, and, because a contact begins and ends within a step and F'' is not finite there, noise with mean 0 that falls as
+/// dt^(5/2) or faster.
 #include <gtest/gtest.h>
 
 #include "engines/loop/test_scenes.hpp"
@@ -20,7 +21,7 @@ namespace {
 const laws::HertzHistory<Real> paper{ 2e6, 2.46e6, 2500, 2500, 0 };  // Tripura et al., section 2
 constexpr double speed = 1, paper_step = 1e-4;
 
-/// Two disks that fly at each other and meet at some moment within a step.
+/// Two disks that approach and touch at some moment within a step.
 Scene<2> impact(double dt, double phase, double damping)
 {
 	Scene<2> s;
@@ -33,8 +34,8 @@ Scene<2> impact(double dt, double phase, double damping)
 }
 
 struct Impact {
-	double entry = 0, predicted = 0;  // of the energy before
-	double change = 0;                // of the kinetic energy from before to after
+	double entry = 0, predicted = 0;  // over the energy before the impact
+	double change = 0;                // change of the kinetic energy by the impact
 };
 
 Impact outcome(const Scene<2>& scene)
@@ -59,7 +60,7 @@ Impact outcome(const Scene<2>& scene)
 	return result;
 }
 
-/// Mean over phases and its standard error, and the mean of the prediction.
+/// Mean over the moments within a step, its standard error, and the mean of the prediction.
 struct Sample {
 	double mean = 0, error = 0, predicted = 0, spread = 0;
 };
@@ -82,7 +83,7 @@ TEST(TimeStepEntry, of_damped_impacts_is_the_trapezoids_error)
 {
 	for (const double dt : { paper_step, paper_step / 2, paper_step / 4 }) {
 		const Sample entry = over_phases(dt, paper.gamma_n, &Impact::entry);
-		// The sum for the prediction is the trapezoid's too, so it is right to (omega dt)^2, 1e-3 of itself.
+		// The prediction is summed by the trapezoid rule too, so its relative error is (omega dt)^2, 1e-3.
 		EXPECT_NEAR(entry.mean, entry.predicted, 4 * entry.error + 2e-3 * std::abs(entry.predicted)) << "dt = " << dt;
 		EXPECT_GT(std::abs(entry.predicted), 10 * entry.error);
 	}
@@ -90,7 +91,7 @@ TEST(TimeStepEntry, of_damped_impacts_is_the_trapezoids_error)
 
 TEST(TimeStepEntry, of_elastic_impacts_is_what_they_lose_or_gain)
 {
-	// Before and after there is kinetic energy alone: the leapfrog did change it, by more than 1e-6 at the paper's time step.
+	// Before and after the impact all energy is kinetic. Leapfrog changes it, by more than 1e-6 at the paper's time step.
 	const Sample at_paper_step = over_phases(paper_step, 0, &Impact::change),
 				 halved = over_phases(paper_step / 2, 0, &Impact::change);
 	EXPECT_GT(at_paper_step.spread, 1e-6);

@@ -1,4 +1,4 @@
-/// Flat walls: closed forms of a bounce, a slide and a pile; walls that move; the promise of the same bits.
+/// Flat walls: closed forms of a bounce, a slide and a pile; walls that move; the same bits on any number of threads.
 #include <gtest/gtest.h>
 
 #include "engines/base/temporary_file.hpp"
@@ -27,7 +27,7 @@ Scene<2> box_of(std::vector<Wall<2>> walls)
 	return scene;
 }
 
-/// 500 disks apart from each other between a floor and a lid, periodic in x.
+/// 500 disks without contacts between a floor and a lid, periodic in x.
 Scene<2> loose_bed(double lid_velocity)
 {
 	Scene<2> scene = crowd(25, 3, 0.1);
@@ -71,7 +71,8 @@ TEST(Walls, a_bounce_has_the_imposed_restitution_on_every_side)
 		(x ? scene.grains[0].velocity[0] : scene.grains[0].velocity[1]) = out;
 		Stepper<2> loop(scene);
 		loop.step(2000);
-		// Leapfrog's error of a half oscillation, (omega dt)^2/24 = 5e-6, and the last step of contact, of order omega dt damping.
+		// Leapfrog's error over half an oscillation, (omega dt)^2/24 = 5e-6, and an error of order omega dt damping from the last
+		// step of contact.
 		EXPECT_NEAR(x ? loop.grain(0).velocity[0] : loop.grain(0).velocity[1], -0.8 * out, 1e-3) << name_of(side);
 	}
 }
@@ -91,7 +92,8 @@ TEST(Walls, a_hertzian_bounce_stores_the_energy_in_the_overlap_and_gives_it_back
 		deepest = std::max(deepest, 0.5 - loop.grain(0).place[1]);
 	}
 	const double mass = pi / 4, expected = std::pow(0.5 * mass / (0.4 * 2e5 * std::sqrt(0.5)), 0.4);
-	// (omega dt)^2 with omega = 600/s: 4e-5, of which leapfrog keeps a fraction while the contact lasts and returns it after.
+	// (omega dt)^2 with omega = 600/s is 4e-5; leapfrog's energy error during a contact is a fraction of it and vanishes
+	// afterwards.
 	EXPECT_NEAR(deepest, expected, 1e-4 * expected);
 	EXPECT_NEAR(loop.grain(0).velocity[1], 1, 1e-5);
 }
@@ -106,7 +108,7 @@ TEST(Walls, a_sliding_disk_is_braked_by_friction_until_it_rolls_at_two_thirds)
 	scene.grains[0].velocity[0] = v0;
 	Stepper<2> loop(scene);
 	loop.step(500);
-	// The first steps charge the spring: k_t s = mu N after s = mu delta k_n/k_t, a millimetre of 50 travelled.
+	// The first steps stretch the spring: k_t s = mu N after s = mu delta k_n/k_t, a millimetre of the 50 travelled.
 	EXPECT_NEAR(loop.grain(0).velocity[0], v0 - mu * g * 0.05, 2e-3);
 	EXPECT_TRUE(loop.surface_contacts()[0].slipping);
 	EXPECT_NEAR(loop.settings().walls[0].force[0], mu * mass * g, 1e-9);
@@ -114,7 +116,7 @@ TEST(Walls, a_sliding_disk_is_braked_by_friction_until_it_rolls_at_two_thirds)
 	loop.step(20000);
 	EXPECT_NEAR(loop.grain(0).velocity[0], 2.0 / 3 * v0, 1e-3);
 	EXPECT_NEAR(
-		loop.grain(0).spin * 0.5, -loop.grain(0).velocity[0], 1e-3);  // no surface slips any more; the spring still swings
+		loop.grain(0).spin * 0.5, -loop.grain(0).velocity[0], 1e-3);  // the surfaces no longer slip; the spring still oscillates
 }
 
 TEST(Walls, a_sliding_wall_drags_a_disk_along)
@@ -125,7 +127,7 @@ TEST(Walls, a_sliding_wall_drags_a_disk_along)
 	scene.grains = { disk(0, 0.499) };
 	Stepper<2> loop(scene);
 	loop.step(20000);
-	// Angular momentum about the line of contact is kept: v = 1/3, R w = 2/3.
+	// Angular momentum about the line of contact is conserved: v = 1/3, R w = 2/3.
 	EXPECT_NEAR(loop.grain(0).velocity[0], 1.0 / 3, 1e-3);
 	EXPECT_NEAR(loop.grain(0).spin * 0.5, 2.0 / 3, 1e-3);
 }
@@ -196,7 +198,7 @@ TEST(Walls, walls_halt_at_the_area_fraction_asked_for)
 		double area = 0;
 		for (const Grain<2>& g : scene.grains) area += pi * g.radius * g.radius;
 		const auto& walls = loop.settings().walls;
-		EXPECT_NEAR(area / (25 * (walls[1].position - walls[0].position)), asked, 1e-4);  // a step's travel of 20 d
+		EXPECT_NEAR(area / (25 * (walls[1].position - walls[0].position)), asked, 1e-4);  // the lid's travel in a step over 20 d
 		EXPECT_EQ(walls[1].velocity, 0);
 	}
 }
@@ -234,7 +236,7 @@ TEST(Walls, springs_at_walls_survive_searches)
 	Stepper<2> a(often), b(seldom);
 	a.step(4000), b.step(4000);
 	EXPECT_GT(a.searches_done(), 3 * b.searches_done());
-	// Only the order of sums differs; a lost spring would show as 1e-3.
+	// Only the order of sums differs; a lost spring would change results by 1e-3.
 	EXPECT_LT(largest_difference(
 				  often, [&](std::size_t i) { return a.grain(i); }, [&](std::size_t i) { return b.grain(i); }),
 		1e-9);
@@ -255,7 +257,7 @@ TEST(Walls, frozen_disks_pushed_by_a_load_close_in_until_the_bed_bears_it)
 		loop.step();
 		borne += loop.bodies()[0].force[1] / 1e5, floor -= loop.settings().walls[0].force[1] / 1e5;
 	}
-	EXPECT_NEAR(borne, 125, 0.5);  // the bed still swings: 400 kg at 1 cm/s over 10 s
+	EXPECT_NEAR(borne, 125, 0.5);  // the bed still oscillates: 400 kg at 1 cm/s over 10 s
 	EXPECT_NEAR(floor, 125, 0.5);
 }
 

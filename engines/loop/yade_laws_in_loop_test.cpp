@@ -1,4 +1,4 @@
-/// YADE's own laws and damping in the fast loop: angular momentum, what a body's contacts add up to, what views tell, and refusals.
+/// YADE's own laws and damping in the fast loop: angular momentum, sums over a body's contacts, views of contacts, and refusals.
 #include <gtest/gtest.h>
 
 #include "engines/base/complaint.hpp"
@@ -12,13 +12,13 @@ namespace {
 
 const ContactLaw yade_laws[] = { laws::cundall_strack(2e5, 0.3, 0.4), laws::hertz_mindlin(2e6, 0.3, 0.2, 0.1, 0.4) };
 
-/// A crowd in the open with a clump that responds.
+/// Grains without walls, and a clump that responds to forces.
 Scene<2> open_crowd(const ContactLaw& law)
 {
 	Scene<2> s = crowd(8, 3);
 	s.law = law;
 	s.cell = {};
-	for (std::size_t i = 0; i < s.grains.size(); ++i) {  // most touch
+	for (std::size_t i = 0; i < s.grains.size(); ++i) {  // most grains touch
 		const Grain<2> g = s.grains[i];
 		s.grains[i] = disk(0.985 * g.place[0], 0.985 * g.place[1], 0.5 - 0.004 * (i % 5));
 		s.grains[i].velocity[0] = g.velocity[0], s.grains[i].velocity[1] = g.velocity[1], s.grains[i].spin = g.spin;
@@ -55,10 +55,10 @@ TEST(YadeLawsInLoop, conserve_angular_momentum_for_their_forces_act_at_one_point
 		Stepper<2> loop(open_crowd(law));
 		const double before = angular_momentum(loop);
 		loop.step(500);
-		// 64 grains at up to 8, each rounded in 500 steps.
+		// Round-off of 64 grains at distances of up to 8 in 500 steps.
 		EXPECT_NEAR(angular_momentum(loop), before, 64 * 8 * 500 * 1e-16 * 10) << law.index();
 	}
-	Scene<2> other = open_crowd(hertz());  // at the radius instead: the torque of the overlap is left over
+	Scene<2> other = open_crowd(hertz());  // this law's force acts at the radius, so the torque of the overlap remains
 	Stepper<2> loop(other);
 	const double before = angular_momentum(loop);
 	loop.step(500);
@@ -85,7 +85,7 @@ TEST(YadeLawsInLoop, a_bodys_contacts_add_up_to_its_force_and_torque)
 				EXPECT_NEAR(std::hypot(t.n[0], t.n[1]), 1, 1e-12);
 			}
 			const RigidBody<2>& body = loop.bodies()[0];
-			// A normal that is recovered from a force in float is known to 1e-7.
+			// A normal that is computed from a force in single precision has an error of 1e-7.
 			const double round_off = size * (precision == Precision::single ? 1e-5 : 1e-12);
 			EXPECT_NEAR(x, body.force[0], round_off);
 			EXPECT_NEAR(y, body.force[1], round_off);

@@ -1,4 +1,4 @@
-/// Kernels integrated over an axis: against quadrature along the axis and along lines, and where they are known.
+/// Kernels integrated over an axis, against quadrature along the axis and along lines, and against known values.
 #include "engines/measures/averaged_kernels.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Line {
 	Vector3r from, branch, point;
 };
 
-/// Lines in the plane of z = 0.3, some through the kernel and some beside it.
+/// Projected lines in the plane z = 0.3, some through the kernel and some beside it.
 std::vector<Line> random_shadows(int count)
 {
 	std::mt19937 random(11);
@@ -78,7 +78,7 @@ TEST(AveragedKernels, LinesAgreeWithQuadrature)
 {
 	for (const Line& line : random_shadows(300)) {
 		const auto chord = [](Real square) { return 2 * std::sqrt(std::max(0.81 - square, 0.0)); };
-		// The chord begins like a square root: the midpoint rule misses some 1/20000^(3/2) of it there.
+		// The chord begins as a square root, so the midpoint rule has an error of about 1/20000^(3/2) there.
 		EXPECT_NEAR(mean_chord_along_axis(line.from, line.branch, line.point, 0.9), mean_over(line, chord), 2e-6);
 		for (const Real c : { 0.8, 1.5, 3.0 }) {
 			const auto across = [&](Real square) { return gaussian_along_axis(square, 0.6, c); };
@@ -114,7 +114,8 @@ TEST(AveragedKernels, ALineAlongTheAxisIsAPoint)
 	const Real square = (from - point).squaredNorm();
 	EXPECT_DOUBLE_EQ(mean_chord_along_axis(from, Vector3r::Zero(), point, 1), 2 * std::sqrt(1 - square));
 	EXPECT_DOUBLE_EQ(mean_gaussian_along_axis(from, Vector3r::Zero(), point, 1, 2), gaussian_along_axis(square, 1, 2));
-	// Almost along it: a mean over 1e-8 or 1e-6 differs by the slope times half of that, and from round-off by 1e-16/1e-6.
+	// Lines almost along the axis: a mean over 1e-8 or 1e-6 differs by the slope times half of that, and by a round-off of
+	// 1e-16/1e-6.
 	for (const Real size : { 1e-8, 1e-6 }) {
 		EXPECT_NEAR(mean_chord_along_axis(from, size * direction, point, 1), 2 * std::sqrt(1 - square), 2 * size);
 		EXPECT_NEAR(mean_gaussian_along_axis(from, size * direction, point, 1, 2), gaussian_along_axis(square, 1, 2), 2 * size);

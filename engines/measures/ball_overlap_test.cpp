@@ -1,4 +1,5 @@
-/// Volume of the lens of two spheres: against the sum of its slices and where it is known. (Disks: disk_square_overlap_test.cpp.)
+/// Volume of the lens of two spheres, against the sum of its slices and known values. (For disks see
+/// disk_square_overlap_test.cpp.)
 #include "engines/measures/ball_overlap.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 namespace graindrive {
 namespace {
 
-/// Slices across the line of centres are disks: the smaller of the two spheres' sections.
+/// The volume as a sum over slices across the line of centres; each slice is the smaller of the two spheres' sections.
 Real sliced(Real r, Real big_r, Real distance)
 {
 	const int n = 200000;
@@ -34,7 +35,7 @@ TEST(BallOverlap, SpheresInsideBesideAndTouching)
 	EXPECT_DOUBLE_EQ(sphere_sphere_overlap(2, 0.5, 0), pi / 6);
 	EXPECT_DOUBLE_EQ(sphere_sphere_overlap(1, 1, 0), 4 * pi / 3);
 	EXPECT_EQ(sphere_sphere_overlap(1, 2, 3), 0);
-	EXPECT_NEAR(sphere_sphere_overlap(0.5, 2, 1.5 + 1e-9), pi / 6, 1e-15);  // continuous where the small one comes out
+	EXPECT_NEAR(sphere_sphere_overlap(0.5, 2, 1.5 + 1e-9), pi / 6, 1e-15);  // continuous where the small one leaves
 	// A lens of depth h: pi h^2 R_eff to first order, with R_eff = r R/(r + R); h = 2^-30 is exact.
 	const Real h = std::ldexp(1, -30);
 	EXPECT_NEAR(sphere_sphere_overlap(0.5, 0.25, 0.75 - h) / (pi * h * h / 6), 1, 10 * h);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Real round_off = 16 * std::numeric_limits<Real>::epsilon();
 
-/// Width of a disk's cut at height y inside [low, high], and its first moment in x.
+/// Length of a disk's chord at height y inside [low, high], and its first moment in x.
 Vector2r cut(Real radius, Real y, Real low, Real high)
 {
 	const Real half = std::sqrt(std::max(radius * radius - y * y, Real(0)));
@@ -21,7 +21,7 @@ Vector2r cut(Real radius, Real y, Real low, Real high)
 	return b > a ? Vector2r(b - a, (b * b - a * a) / 2) : Vector2r(Vector2r::Zero());
 }
 
-/// Midpoints in angle, y = r sin t, which takes the circle's vertical tangents out of the integrand.
+/// Midpoint rule in the angle t, y = r sin t, in which the integrand has no vertical tangents.
 Overlap by_quadrature(Real radius, const Vector2r& low, const Vector2r& high)
 {
 	const int n = 40000;
@@ -88,7 +88,7 @@ TEST(DiskSquareOverlap, AgreesWithQuadratureAnywhere)
 	for (int k = 0; k < 400; ++k) {
 		const Vector2r low(place(random), place(random)), high = low + Vector2r(size(random), size(random));
 		const Overlap exact = disk_square_overlap(1, low, high), numeric = by_quadrature(1, low, high);
-		// Midpoints leave an error of step^2 where the cut has kinks: (pi/4e4)^2 = 6e-9.
+		// Where the chord's length has kinks the midpoint rule has an error of step^2: (pi/4e4)^2 = 6e-9.
 		EXPECT_NEAR(exact.area, numeric.area, 2e-8) << low.transpose() << " to " << high.transpose();
 		EXPECT_NEAR((exact.moment - numeric.moment).norm(), 0, 4e-8) << low.transpose() << " to " << high.transpose();
 		cut_bins += exact.area > 0 && exact.area < 0.999 * (high - low).prod();

@@ -1,4 +1,4 @@
-/// Every kernel gives a grain its whole area and a line its whole length.
+/// Every kernel distributes exactly the whole area of a grain and the whole length of a line.
 #include "engines/measures/field_kernels.hpp"
 
 #include <gtest/gtest.h>
@@ -42,11 +42,12 @@ TEST(FieldKernels, DiskBinsGiveTheWholeGrain)
 TEST(FieldKernels, CutGaussianGivesTheWholeGrain)
 {
 	for (const Vector2r& at : places) {
-		// The kernel ends with a step of e^-9 of its peak: the sum misses at most that along its rim, 2 pi 3w times half a spacing.
+		// The kernel ends with a step of e^-9 of its peak, so the sum's error is at most this step along its rim, 2 pi 3w, times
+		// half a spacing.
 		const Real step = std::exp(-9) / pi * 2 * pi * 3 * 0.05 / 2;
 		EXPECT_NEAR(area_given(GaussianKernel<2>{ 1, 3 }, grid_with(0.05), at, 0.5), pi / 4, pi / 4 * step);
 		EXPECT_NEAR(line_given(GaussianKernel<2>{ 1, 3 }, grid_with(0.05), at, { 0.4, -0.83 }), 1, step);
-		// Where the step is e^-25 nothing is missing (Poisson summation: 4 exp(-(pi w/spacing)^2)).
+		// With a step of e^-25 the error is negligible (Poisson summation: 4 exp(-(pi w/spacing)^2)).
 		EXPECT_NEAR(area_given(GaussianKernel<2>{ 0.8, 5 }, grid_with(0.4), at, 0.5), pi / 4, 1e-11);
 		EXPECT_NEAR(line_given(GaussianKernel<2>{ 0.8, 5 }, grid_with(0.4), at, { 0.4, -0.83 }), 1, 2e-11);
 	}
@@ -70,7 +71,8 @@ TEST(FieldKernels, SpheresGiveTheWholeGrain)
 {
 	for (const Vector2r& at : places) {
 		EXPECT_NEAR(area_given(SphereKernel<2>{ 1 }, grid_with(0.025), at, 0.5), pi / 4, 1e-5);
-		// The indicator of a disk, counted on a grid: Gauss's circle problem, a rim of a thousandth of the area.
+		// The kernel is 1 inside a disk and 0 outside; counted on a grid (Gauss's circle problem), its error is a thousandth of
+		// the area.
 		EXPECT_NEAR(line_given(SphereKernel<2>{ 1 }, grid_with(0.025), at, { 0.4, -0.83 }), 1, 1e-3);
 	}
 }
@@ -104,7 +106,7 @@ TEST(FieldGrid, ImagesOfAPeriodicBox)
 	EXPECT_EQ(images({ 701.2, 0 }, { 7, 0 }), 1);  // however many windings away
 	EXPECT_EQ(images({ 1.9, 0 }, { 4, 0 }), 2);    // cut by the periodic side: both parts
 	EXPECT_EQ(images({ 1.9, -1.9 }, { 4, 4 }), 4);
-	EXPECT_EQ(images({ 0.1, 0 }, { 1.5, 0 }), 3);  // a window larger than the box sees a grain more than once
+	EXPECT_EQ(images({ 0.1, 0 }, { 1.5, 0 }), 3);  // a window larger than the box contains several images of a grain
 }
 
 }  // namespace

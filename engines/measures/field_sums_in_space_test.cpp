@@ -1,4 +1,4 @@
-/// Fields of spheres: what every sum must be is known, on a grid in space and on one that is averaged along an axis.
+/// Fields of spheres whose sums are known, on a grid in space and on one that is averaged along an axis.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -25,7 +25,7 @@ public:
 	{
 		return means_at<3>(sums.data() + std::size_t(point) * sums_at_a_point<3>(plan.stress), samples, plan.stress);
 	}
-	/// Integral over the window; a point stands for its bin.
+	/// Integral over the window: the value of each point times the size of its bin.
 	template <class Value>
 	auto integral(Value&& value) const
 	{
@@ -50,7 +50,7 @@ private:
 	std::vector<Real> sums;
 };
 
-/// Cubes of length/n in the periodic box; `averaged`: an axis to average over, in a window from `from` to `to` along it.
+/// A grid of cubes of length/n in the periodic box; along the axis `averaged` it is averaged over a window from `from` to `to`.
 FieldPlan<3> box(const FieldKernel<3>& kernel, int n, int averaged = -1, Real from = -length / 2, Real to = length / 2)
 {
 	FieldGrid<3> grid{ Vector3r::Constant(-length / 2), length / n, { n, n, n } };
@@ -88,10 +88,11 @@ struct Sort {
 	const char* name;
 	FieldKernel<3> whole, averaged;
 	int n;                         // bins along an edge of the box
-	Real grain_error, line_error;  // what sums over points miss of integrals, over the greatest value
+	Real grain_error, line_error;  // errors of sums over points against integrals, over the greatest value
 };
-// A Gaussian cut at 5 w, on points w/2.5 apart: exp(-(2.5 pi)^2) = 2e-27 of Poisson's sum, exp(-25) = 1e-11 of the cut.
-// Spheres: an overlap has a kink in its second derivative and is off by some (spacing/R)^3, a line's fraction of a sphere jumps.
+// A Gaussian cut at 5 w, on points w/2.5 apart, has errors of exp(-(2.5 pi)^2) = 2e-27 by Poisson summation and exp(-25) = 1e-11
+// by the cut. Spheres: an overlap has a kink in its second derivative, so its error is about (spacing/R)^3; a line's fraction in
+// a sphere jumps.
 const Sort sorts[] = {
 	{ "gaussian", GaussianKernel<3>{ 0.5, 5 }, AveragedGaussianKernel{ { 0.5, 5 } }, 20, 1e-9, 1e-9 },
 	{ "sphere", SphereKernel<3>{ 0.7 }, AveragedSphereKernel{ 0.7 }, 32, 1e-4, 5e-3 },
@@ -126,7 +127,7 @@ TEST(FieldSumsInSpace, AContactsStressOverSpaceIsForceTimesBranch)
 {
 	const FieldContact<3> contacts[] = { { { 1.9, -1.8, 0.3 }, { 0.3, -0.4, 0.6 }, { 1, 2, -3 } },
 		{ { 0.1, 1.7 + 3 * length, -0.3 - length }, { 0, 0.9, 0 },
-			{ 0.3, 4, 0.2 } } };  // along y: a point on a grid averaged over y
+			{ 0.3, 4, 0.2 } } };  // the line along y is a point on a grid averaged over y
 	for (const Sort& sort : sorts)
 		for (const FieldContact<3>& c : contacts)
 			for (const int axis : { -1, 0, 1, 2 }) {
@@ -170,7 +171,7 @@ TEST(FieldSumsInSpace, OneGrainByHand)
 	EXPECT_NEAR(gaussian.density, 2 * w, 1e-15);
 	EXPECT_EQ((gaussian.velocity - grain.velocity).norm(), 0);
 	EXPECT_EQ(gaussian.temperature, 0);
-	EXPECT_NEAR(sphere.fraction, volume / (4 * pi / 3 * 1.25 * 1.25 * 1.25), 1e-17);  // at a distance of 0.94, it is inside
+	EXPECT_NEAR(sphere.fraction, volume / (4 * pi / 3 * 1.25 * 1.25 * 1.25), 1e-17);  // inside, at a distance of 0.94
 	EXPECT_EQ((sphere.velocity - grain.velocity).norm(), 0);
 }
 
@@ -190,13 +191,13 @@ TEST(FieldSumsInSpace, OneContactByHand)
 	};
 	const Real big = 4 * pi / 3 * 8, small = 4 * pi / 3 / 64;
 	expect(stress(SphereKernel<3>{ 2 }, -1), 1 / big);
-	expect(stress(SphereKernel<3>{ 0.25 }, -1), 0.5 / small);  // half of the line
+	expect(stress(SphereKernel<3>{ 0.25 }, -1), 0.5 / small);  // half of the line is inside
 	const Real norm = GaussianKernel<3>{ 1, 3 }.norm();
 	expect(stress(GaussianKernel<3>{ 1, 3 }, -1), norm * std::sqrt(pi) * std::erf(0.5));
-	// Averaged over x, along the line: the whole chord of the axis through the middle, over the window's length of 1.
+	// Averaged over x, along the line: the length of the axis inside the sphere, over the window's length of 1.
 	expect(stress(AveragedSphereKernel{ 2 }, 0), 4 / big);
 	expect(stress(AveragedGaussianKernel{ { 1, 3 } }, 0), norm * std::sqrt(pi) * std::erf(3));
-	// Averaged over z: the circle between x = -1/2 and 1/2, a rectangle and two segments.
+	// Averaged over z: the area of the circle between x = -1/2 and 1/2, a rectangle and two segments.
 	expect(stress(AveragedSphereKernel{ 2 }, 2), (std::sqrt(3.75) + 8 * std::asin(0.25)) / big);
 }
 
@@ -233,7 +234,7 @@ TEST(FieldSumsInSpace, CubicLatticeUnderUniformLoad)
 			for (int k = 0; k < 3; ++k) fields.add(FieldContact<3>{ at, s * Vector3r::Unit(k), force[k] * Vector3r::Unit(k) });
 		}
 		const Matrix3r expected = (force / (s * s)).asDiagonal();
-		// 6 exp(-(pi w/s)^2) = 3e-4 of the lattice's own ripple, less than that as each line smooths it along itself.
+		// The lattice gives a ripple of 6 exp(-(pi w/s)^2) = 3e-4 at most; each line smooths it along itself.
 		for (int p = 0; p < fields.plan.grid.size(); ++p)
 			EXPECT_NEAR((fields.at(p).contact_stress - expected).norm(), 0, 3e-4 * expected.norm());
 	}
@@ -268,7 +269,8 @@ TEST(FieldSumsInSpace, AveragedFieldsAreTheMeanOfTheSlices)
 				greatest_fraction = std::max(greatest_fraction, fraction);
 				greatest_stress = std::max(greatest_stress, stress.norm());
 			}
-			// A line across the axis comes into a sphere like a square root of the slice's distance: (spacing/R)^(3/2) = 0.08 of its part.
+			// Near the rim the part of a line in a sphere grows as the square root of the slice's distance, so the error is
+			// (spacing/R)^(3/2) = 0.08.
 			const Real line_error = sort.line_error < 1e-6 ? sort.line_error : 0.05;
 			EXPECT_LT(worst_fraction, 10 * sort.grain_error * greatest_fraction) << sort.name << axis;
 			EXPECT_LT(worst_velocity, 40 * sort.grain_error * greatest_fraction) << sort.name << axis;
@@ -316,7 +318,7 @@ TEST(FieldSumsInSpace, ImagesAreSeenAlongAllAxes)
 	Fields beside(box(sort.whole, 10)), across(box(sort.whole, 10));
 	beside.add(FieldContact<3>{ { 0.1, 0.3, 0.2 }, { 0.8, 0.4, -0.5 }, { 1, 2, 3 } });
 	across.add(FieldContact<3>{ { 0.1 - 2, 0.3 + 2 + 3 * length, 0.2 - 2 - length }, { 0.8, 0.4, -0.5 }, { 1, 2, 3 } });
-	for (int p = 0; p < beside.plan.grid.size(); ++p) {  // by half the box, which is five bins, along every axis
+	for (int p = 0; p < beside.plan.grid.size(); ++p) {  // shifted by half the box, five bins, along every axis
 		FieldGrid<3>::Place place = beside.plan.grid.place(p);
 		const Matrix3r here = beside.at(p).contact_stress;
 		for (int& k : place) k = (k + 5) % 10;

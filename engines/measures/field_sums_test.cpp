@@ -1,4 +1,4 @@
-/// Fields of configurations made by hand: what every sum must be is known.
+/// Fields of simple configurations whose sums are known.
 #include "engines/measures/field_sums.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(FieldSums, RandomDisksKeepTheirAreaMassAndMomentum)
 		const Real bin = length / n * length / n;
 		EXPECT_NEAR(bin * bins.sum([](const FieldMeans<2>& m) { return m.fraction; }), disk_area, 1e-12 * disk_area);
 		EXPECT_NEAR(bin * bins.sum([](const FieldMeans<2>& m) { return m.density; }), mass, 1e-12 * mass);
-		// Spin moves parts of a grain against each other, never the whole.
+		// Spin does not change the mean velocity of a grain.
 		const Vector2r given = bin * bins.sum([](const FieldMeans<2>& m) -> Vector2r {
 			return m.fraction > 0 ? Vector2r(m.fraction * m.velocity) : Vector2r(Vector2r::Zero());
 		});
@@ -92,13 +92,13 @@ TEST(FieldSums, GaussianOfOneGrain)
 	const FieldMeans<2> m = fields.at(2 * 4 + 1);
 	EXPECT_NEAR(m.fraction, pi / 4 * w, 1e-16);
 	EXPECT_NEAR(m.density, 2 * w, 1e-15);
-	EXPECT_EQ((m.velocity - Vector2r(3, 4)).norm(), 0);  // the grain's own: Eq. (3.2) has no spin
+	EXPECT_EQ((m.velocity - Vector2r(3, 4)).norm(), 0);  // the velocity of the grain's centre: Eq. (3.2) has no spin
 	EXPECT_EQ(m.temperature, 0);
 }
 
 TEST(FieldSums, RigidRotationIsExact)
 {
-	// Large disks, each turning with the whole: in every bin inside one of them the velocity is omega x r, and nothing fluctuates.
+	// Large disks that rotate rigidly together: in every bin inside one of them the velocity is omega x r, without fluctuations.
 	const Real omega = -0.7;
 	const FieldPlan<2> plan{ FieldGrid<2>{ { -2, -2 }, 0.1, 40, 40 }, DiskBinKernel{}, { 0, 0 }, false };
 	Fields fields(plan);
@@ -130,7 +130,7 @@ TEST(FieldSums, TemperatureOfTwoFramesIsAboutTheirMean)
 		for (int p = 0; p < 16; ++p) {
 			const FieldMeans<2> m = fields.at(p, 4);
 			if (!(m.fraction > 0)) continue;
-			// 1e6 and 5e-3 differ by 2e8: a difference of mean squares would leave nothing.
+			// The ratio of 1e6 to 5e-3 is 2e8: a difference of mean squares would lose all digits.
 			EXPECT_NEAR(m.temperature, u.squaredNorm() / 2, stream > 0 ? 1e-6 * u.squaredNorm() : 1e-19);
 			EXPECT_NEAR(m.kinetic_stress(0, 1), m.density * u[0] * u[1], stream > 0 ? 1e-5 * m.density * u[0] * u[1] : 1e-19);
 		}
@@ -202,7 +202,7 @@ TEST(FieldSums, SquareLatticeUnderUniformLoad)
 				fields.add(FieldContact<2>{ at, { s, 0 }, { f_x, 0 } });
 				fields.add(FieldContact<2>{ at, { 0, s }, { 0, f_y } });
 			}
-		if (std::holds_alternative<SphereKernel<2>>(kernel)) {  // counts what lies inside a circle: right in the mean over places
+		if (std::holds_alternative<SphereKernel<2>>(kernel)) {  // the part inside a circle is right only in the mean over places
 			Fields fine(box(kernel, n * s, 20 * n));
 			for (int i = 0; i < n; ++i)
 				for (int j = 0; j < n; ++j) fine.add(FieldContact<2>{ { s * (i + 0.21), s * (j - 0.4) }, { 0, s }, { 0, f_y } });
@@ -221,14 +221,15 @@ TEST(FieldSums, SquareLatticeUnderUniformLoad)
 
 TEST(FieldSums, HydrostaticBedCarriesTheWeightAbove)
 {
-	// Columns of disks under gravity, pressed sideways as strongly as from above: P is the weight above over the width.
+	// Columns of disks under gravity, with sideways forces as large as the vertical ones: the pressure is the weight above over
+	// the width.
 	const int width = 12, height = 30;
 	const Real weight = 0.7;
 	const FieldPlan<2> plan{ FieldGrid<2>{ { 0, 4 }, 0.5, 24, 40 }, GaussianKernel<2>{ 1, 3 }, { Real(width), 0 }, true };
 	Fields fields(plan);
 	for (int i = 0; i < width; ++i)
 		for (int j = 0; j < height; ++j) {
-			const Real above = weight * (height - 1 - j);  // carried by the contact over disk j
+			const Real above = weight * (height - 1 - j);  // the force in the contact above disk j
 			fields.add(FieldContact<2>{ { i + 0.5, j + 0.5 }, { 0, 1 }, { 0, above } });
 			fields.add(FieldContact<2>{ { i + 0.5, j + 0.5 }, { 1, 0 }, { above + weight / 2, 0 } });
 		}

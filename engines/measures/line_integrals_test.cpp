@@ -1,4 +1,4 @@
-/// Kernels integrated along lines, against quadrature and against what can be said without it.
+/// Kernels integrated along lines, against quadrature and closed forms.
 #include "engines/measures/line_integrals.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::vector<Line> random_lines(int count)
 	return all;
 }
 
-/// Mean of f over the line by midpoints.
+/// Mean of f over the line by the midpoint rule.
 template <class F>
 Real along(const Line& line, F&& f)
 {
@@ -44,7 +44,7 @@ TEST(LineIntegrals, GaussianAgreesWithQuadrature)
 
 TEST(LineIntegrals, GaussianCutInTheMiddleOfALine)
 {
-	// A line through the centre from far outside to far outside: w sqrt(pi) erf(c)/L whatever its direction.
+	// A line through the centre with both ends far outside: w sqrt(pi) erf(c)/L in every direction.
 	const Real w = 0.5;
 	for (const Real angle : { 0.0, 0.4, 1.9, 3.0 }) {
 		const Vector2r half(5 * std::cos(angle), 5 * std::sin(angle)), centre(0.3, -2);
@@ -83,7 +83,7 @@ TEST(LineIntegrals, ChordsOfBoxes)
 	EXPECT_DOUBLE_EQ(fraction_in_box<Vector2r>({ -1, 0.5 }, { 4, 0 }, low, high), 0.25);
 	EXPECT_DOUBLE_EQ(fraction_in_box<Vector2r>({ -0.5, 0 }, { 1, 1 }, low, high), 0.5);  // enters through the left side
 	EXPECT_EQ(fraction_in_box<Vector2r>({ -1, 0 }, { 1, 3 }, low, high), 0);             // passes the corner
-	// Along a common edge of two boxes: in one of them.
+	// A line along the common edge of two boxes counts in one of them.
 	EXPECT_EQ(fraction_in_box<Vector2r>({ 0, 1 }, { 1, 0 }, low, high) +
 				  fraction_in_box<Vector2r>({ 0, 1 }, { 1, 0 }, { 0, 1 }, { 1, 2 }),
 		1);

@@ -1,4 +1,5 @@
-/// Random packings: no overlaps by brute force, the same bits for a seed, uniform, and honest when the box is full.
+/// Random packings have no overlaps (checked by brute force), the same bits for one seed, a uniform distribution, and an error
+/// for a full box.
 #include "engines/packing/random_insertion.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr Real not_a_number = std::numeric_limits<Real>::quiet_NaN();
 
-/// The cell grid's answer without a cell grid.
+/// The deepest overlap by comparing all pairs, without a cell grid.
 Real deepest_by_brute_force(const Box<2>& box, const Points<2>& centres, const std::vector<Real>& radii)
 {
 	Real deepest = 0;
@@ -75,7 +76,7 @@ TEST(RandomInsertion, is_the_same_for_a_seed_and_pinned_for_every_machine)
 	EXPECT_EQ(centres, random_insertion<2>(box, uniform_radii(100, 0.9, 1.1, 42), {}, 42));
 	EXPECT_NE(centres, random_insertion<2>(box, radii, {}, 43));
 	EXPECT_NE(radii, uniform_radii(100, 0.9, 1.1, 43));
-	// Exact digits: a change here means that every seeded bed has changed.
+	// The digits are exact: if they change, every bed made from a seed changes.
 	EXPECT_EQ(radii[0], 0.46396720037641176);
 	EXPECT_EQ(centres[99].x(), 18.955577469099303);
 	EXPECT_EQ(centres[99].y(), 8.254182969892927);
@@ -83,7 +84,8 @@ TEST(RandomInsertion, is_the_same_for_a_seed_and_pinned_for_every_machine)
 
 TEST(RandomInsertion, fills_the_box_evenly)
 {
-	// Chi-square over 8 x 8 parts; hard disks at area fraction 0.3 vary less than Poisson points, whose mean is 63 and spread 11.
+	// Chi-square over 8 x 8 parts; hard disks at area fraction 0.3 vary less than Poisson points, for which chi-square is 63 +-
+	// 11.
 	const Box<2> box = rectangle(0, 80, 0, 80, true);
 	const auto radii = uniform_radii(2400, 0.9, 1.1, 5);
 	std::vector<int> count(64, 0);
@@ -96,7 +98,7 @@ TEST(RandomInsertion, fills_the_box_evenly)
 
 TEST(RandomInsertion, says_what_was_reached_when_the_box_is_full)
 {
-	// Jamming of random insertion is 0.547: 0.7 cannot be reached.
+	// Random insertion jams at an area fraction of 0.547, so 0.7 cannot be reached.
 	const std::string message =
 		complaint([] { random_insertion<2>(rectangle(0, 20, 0, 20, true), uniform_radii(360, 0.9, 1.1, 1), {}, 1, 2000); });
 	EXPECT_TRUE(mentions(message, "2000 random trials") && mentions(message, "of 360 were placed (area fraction 0.5")) << message;

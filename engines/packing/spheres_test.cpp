@@ -1,4 +1,5 @@
-/// Random packings of spheres: no overlaps by brute force, clear of what is to be kept out, the same bits for a seed, uniform.
+/// Random packings of spheres have no overlaps (checked by brute force), keep out of given solids, have the same bits for one
+/// seed, and are uniform.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -12,7 +13,7 @@ using namespace graindrive::packing;
 
 namespace {
 
-/// The cell grid's answer without a cell grid, over all images.
+/// The deepest overlap by comparing all pairs and images, without a cell grid.
 Real deepest_by_brute_force(const Box<3>& box, const Points<3>& centres, const std::vector<Real>& radii)
 {
 	Real deepest = 0;
@@ -75,7 +76,7 @@ TEST(InsertionInSpace, keeps_clear_of_obstacles_across_periodic_sides_and_outsid
 
 TEST(InsertionInSpace, keeps_spheres_whole_outside_of_what_is_kept_out)
 {
-	// An upright cylinder of radius 2 in the middle, and as a container the inside of a ball that touches the box's sides.
+	// Spheres must stay outside a vertical cylinder of radius 2 and inside a ball that touches the box's sides.
 	const Box<3> box{ { -5, -5, -5 }, { 5, 5, 5 }, { false, false, false } };
 	const KeepOut<3> cylinder = [](const Point<3>& x) { return std::hypot(x[0], x[1]) - 2; };
 	const KeepOut<3> around_ball = [](const Point<3>& x) { return 5 - x.norm(); };
@@ -108,13 +109,13 @@ TEST(InsertionInSpace, is_the_same_for_a_seed_and_pinned_for_every_machine)
 	const Points<3> centres = random_insertion<3>(box, radii, {}, 42);
 	EXPECT_EQ(centres, random_insertion<3>(box, radii, {}, 42));
 	EXPECT_NE(centres, random_insertion<3>(box, radii, {}, 43));
-	// Exact digits: a change here means that every seeded bed has changed.
+	// The digits are exact: if they change, every bed made from a seed changes.
 	EXPECT_EQ(centres[99], Point<3>(6.4527909836262749, 6.021194705124314, 2.7940863835783909));
 }
 
 TEST(InsertionInSpace, fills_the_box_evenly)
 {
-	// Chi-square over 4 x 4 x 4 parts; hard spheres at 0.2 vary less than Poisson points, whose mean is 63 and spread 11.
+	// Chi-square over 4 x 4 x 4 parts; hard spheres at 0.2 vary less than Poisson points, for which chi-square is 63 +- 11.
 	const Box<3> box{ { 0, 0, 0 }, { 20, 20, 20 }, { true, true, true } };
 	const std::vector<Real> radii(3200, 0.5);
 	std::vector<int> count(64, 0);
@@ -128,7 +129,7 @@ TEST(InsertionInSpace, fills_the_box_evenly)
 
 TEST(InsertionInSpace, says_what_was_reached_when_the_box_is_full)
 {
-	// Jamming of random insertion is 0.384: 0.5 cannot be reached.
+	// Random insertion jams at a solid fraction of 0.384, so 0.5 cannot be reached.
 	const Box<3> box{ { 0, 0, 0 }, { 8, 8, 8 }, { true, true, true } };
 	const std::string message = complaint([&] { random_insertion<3>(box, std::vector<Real>(489, 0.5), {}, 1, 2000); });
 	EXPECT_TRUE(mentions(message, "spheres must find a free place in 2000 random trials")) << message;

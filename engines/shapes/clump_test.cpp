@@ -1,4 +1,5 @@
-/// Beads: their envelope is the outline, never more; their steps are as asked; the clump has the solid's mass and inertia.
+/// Beads: together they fill the outline and never exceed it; their steps are as requested; the clump has the solid's mass and
+/// inertia.
 #include "engines/shapes/clump.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ using namespace graindrive::shapes;
 
 namespace {
 
-constexpr Real round_off = 1e-12;  // of lengths of order 10: what the trimming of neighbours and a few roundings may leave
+constexpr Real round_off = 1e-12;  // for lengths of order 10: the trimming tolerance and a few round-offs
 
 Eigen::AlignedBox<Real, 2> box_of(const Points& centres, Real radius)
 {
@@ -72,7 +73,8 @@ TEST(Beads, give_the_outer_sizes_of_the_built_in_shapes_exactly)
 		EXPECT_NEAR(beaded.x(), drawn.x(), round_off) << name;
 		EXPECT_NEAR(beaded.y(), drawn.y(), round_off) << name;
 	}
-	// A corner of 60 degrees is rounded: the apex bead's top is R/sin 30 - R = R below the apex, sides are R (sqrt 3 - 1) in.
+	// Beads round off a corner of 60 degrees: the top bead ends R/sin 30 - R = R below the apex, the lower ones R (sqrt 3 - 1)
+	// inside.
 	const Vector2r triangle = box_of(beads(outline_of("triangle"), 0.5), 0.25).sizes();
 	EXPECT_NEAR(triangle.y(), 9.5 * std::sqrt(3.0) / 2 - 0.25, round_off);
 	EXPECT_NEAR(triangle.x(), 9.5 - 2 * 0.25 * (std::sqrt(3.0) - 1), round_off);
@@ -87,7 +89,7 @@ TEST(Beads, touch_the_outline_from_inside_at_steps_no_longer_than_asked)
 			expect_envelope(outline, centres, 0.25);
 			for (const Vector2r& c : centres) EXPECT_NEAR(distance_to(outline, c), 0.25, round_off) << name;
 			EXPECT_LE(longest_step(centres), spacing * 0.5 * (1 + 1e-8))
-				<< name;  // a step may pass by round-off, see `step_slack`
+				<< name;  // a step may be longer by round-off, see `step_slack`
 		}
 }
 
@@ -105,7 +107,7 @@ TEST(Beads, roll_round_a_reflex_corner)
 	const Points centres = beads(l, 0.5, 0.25);
 	expect_envelope(l, centres, 0.25);
 	for (const Vector2r& c : centres)
-		EXPECT_NEAR(distance_to(l, c), 0.25, round_off);  // a mitre would stand 0.25 (sqrt 2 - 1) off
+		EXPECT_NEAR(distance_to(l, c), 0.25, round_off);  // at a sharp corner of the inset it would be 0.25 (sqrt 2 - 1) more
 	EXPECT_LE(longest_step(centres), 0.125 * (1 + 1e-8));
 }
 
@@ -113,7 +115,7 @@ TEST(Beads, follow_a_finely_drawn_curve_without_crowding)
 {
 	const Outline drawn(Outline::disk(7).vertices());
 	const Points centres = beads(drawn, 0.5);
-	EXPECT_NEAR(centres.size(), 41, 1);  // not the 360 corners
+	EXPECT_NEAR(centres.size(), 41, 1);  // not one bead for each of the 360 corners
 	expect_envelope(drawn, centres, 0.25);
 	// Deepest cusp between touching beads: sqrt(R_b^2 + 2 R (R - R_b) (1 - cos a)) - R_b with sin a = R_b / (R - R_b).
 	const Real r = 0.25, inner = 3.5 - r,
@@ -129,7 +131,7 @@ TEST(Beads, stand_on_all_sides_of_a_curve_that_is_short_for_their_steps)
 		ASSERT_GE(centres.size(), 4u) << bead;
 		// Four beads on a circle of radius a leave gaps of sqrt(R^2 + a^2 - sqrt 2 R a) - R_b, R the disk's radius.
 		const Real inner = 3.5 - bead / 2, gap = std::sqrt(3.5 * 3.5 + inner * inner - std::sqrt(2.0) * 3.5 * inner) - bead / 2;
-		EXPECT_LE(largest_gap(drawn, centres, bead / 2), gap * 1.1);  // the curve's corners let beads stand a little uneven
+		EXPECT_LE(largest_gap(drawn, centres, bead / 2), gap * 1.1);  // beads are not exactly evenly spaced on the drawn polygon
 	}
 }
 
@@ -194,7 +196,7 @@ namespace {
 
 Real rounded(Real value, int digits) { return std::round(value * std::pow(10, digits)) / std::pow(10, digits); }
 
-/// A square of side 6, turned, with points between its corners, as a file with that many decimals holds it.
+/// A rotated square of side 6 with points between its corners, rounded to `digits` decimals as in a file.
 Points littered_square(int points_per_side, int digits, const Vector2r& at)
 {
 	const Points corners = outline_of("square", { 6 }, 0.35).vertices();
@@ -210,7 +212,7 @@ Points littered_square(int points_per_side, int digits, const Vector2r& at)
 void expect_touching(const Outline& outline, Real bead_diameter)
 {
 	for (const Vector2r& c : beads(outline, bead_diameter))
-		EXPECT_NEAR(distance_to(outline, c), bead_diameter / 2, 1e-5 * bead_diameter / 2);  // what `beads` promises
+		EXPECT_NEAR(distance_to(outline, c), bead_diameter / 2, 1e-5 * bead_diameter / 2);  // the tolerance of `beads`
 }
 
 }  // namespace
@@ -225,7 +227,8 @@ TEST(Beads, of_a_square_do_not_feel_points_between_its_corners)
 			for (const Vector2r& bead : found) {
 				Real nearest = 1;
 				for (const Vector2r& other : clean) nearest = std::min(nearest, (bead - other).norm());
-				// Rounding moves corners by 0.7e-6 and coordinates of 5e6 hold 1e-9; corners shift beads by at most twice that.
+				// Rounding moves corners by 0.7e-6, coordinates of 5e6 are exact to 1e-9, and beads move by at most twice as much
+				// as corners.
 				EXPECT_LT(nearest, 3e-6 + 3e-9);
 			}
 		}
@@ -257,7 +260,7 @@ TEST(Beads, touch_stars_with_thousands_of_vertices)
 
 TEST(Beads, touch_where_the_inset_is_cut_by_edges_that_are_not_neighbours)
 {
-	// A groove narrower than the bead: its mouth's two corners are rolled round, its bottom is out of reach.
+	// A groove narrower than the bead: beads touch the two corners of its opening and do not reach its bottom.
 	const Outline groove({ { 0, 0 }, { 8, 0 }, { 8, 4 }, { 4.3, 4 }, { 4.3, 3 }, { 3.7, 3 }, { 3.7, 4 }, { 0, 4 } });
 	expect_touching(groove, 1);
 	expect_touching(groove, 0.5);
@@ -283,7 +286,7 @@ TEST(Clump, stands_about_the_centroid_far_out_as_about_the_origin)
 	ASSERT_EQ(here.beads.size(), there.beads.size());
 	EXPECT_NEAR(here.inertia, there.inertia, 1e-13 * here.inertia);
 	for (std::size_t i = 0; i < here.beads.size(); ++i) EXPECT_LT((here.beads[i] - there.beads[i]).norm(), round_off);
-	// The beads' envelope begins where the outline does, at (0, 0); its centroid is (3.22727, 4.04545).
+	// The beads' lowest left point is that of the outline, (0, 0); the outline's centroid is (3.22727, 4.04545).
 	const Vector2r lowest_left = box_of(here.beads, here.bead_radius).min();
 	EXPECT_LT((lowest_left + Vector2r(355.0 / 110, 445.0 / 110)).norm(), round_off);
 }

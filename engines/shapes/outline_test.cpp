@@ -1,4 +1,4 @@
-/// Outlines: what is repaired, what is refused, and how the refusal names the vertex.
+/// Outlines: which faults are repaired, which are refused, and whether the message names the vertex.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string refusal(const Points& vertices)
 TEST(Outline, turns_clockwise_vertices_round)
 {
 	const Points clockwise(square.rbegin(), square.rend());
-	EXPECT_DOUBLE_EQ(solid_of(Outline(clockwise)).area, 4);  // signed: negative if it had stayed clockwise
+	EXPECT_DOUBLE_EQ(solid_of(Outline(clockwise)).area, 4);  // negative if it had stayed clockwise
 }
 
 TEST(Outline, drops_repeated_closing_and_collinear_vertices)
@@ -110,21 +110,21 @@ TEST(Outline, is_turned_far_out_as_exactly_as_about_the_origin)
 
 TEST(FallHeight, does_not_feel_mid_points_and_rounded_digits)
 {
-	// Sides that stand upright but for the sixth digit, with mid points that stick out by as much.
+	// Sides that are vertical except for the sixth digit, with points in their middle that are off the line by as much.
 	const Outline littered(
 		{ { -3, -3 }, { 0, -3.000001 }, { 3, -3 }, { 3.000001, 0 }, { 3, 3 }, { 0, 3 }, { -3, 3 }, { -3.000001, 1 } });
 	EXPECT_NEAR(fall_height(littered), 6, 2e-6);
-	// A circle in edges so short that the product of two neighbours' widths is small against the extent squared.
+	// A circle with edges so short that the product of two neighbours' widths is small compared with the square of the extent.
 	Points fine;
 	for (int i = 0; i < 5000; ++i) fine.emplace_back(std::cos(2 * pi * i / 5000), std::sin(2 * pi * i / 5000));
-	// An arc that rises 4e-7 above its chord, as far as vertices are straightened out, is 1.8e-3 long.
+	// Arcs whose height is below 4e-7 are straightened; such an arc is 1.8e-3 long.
 	EXPECT_NEAR(fall_height(Outline(fine)), 1, 2 * 1.8e-3);
 }
 
 TEST(BuiltIn, has_the_papers_sizes_about_the_centroid)
 {
 	const Real areas[] = { pi * 49 / 4, 6.5 * 6.5, 4.5 * 9.5, 9.5 * 4.5, std::sqrt(3.0) / 4 * 9.5 * 9.5 };
-	const Real falls[] = { 3.5, 6.5, 9.5, 4.5, 9.5 * std::sqrt(3.0) / 2 };  // l of the wiggle paper's Table 1
+	const Real falls[] = { 3.5, 6.5, 9.5, 4.5, 9.5 * std::sqrt(3.0) / 2 };  // l in Table 1 of the wiggle paper
 	int i = 0;
 	for (const std::string& name : shape_names()) {
 		const Outline outline = outline_of(name);

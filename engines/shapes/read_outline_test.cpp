@@ -1,4 +1,4 @@
-/// Files with outlines: both formats in their usual spellings, and messages that lead to the faulty line.
+/// Files with outlines: both formats in their usual forms, and messages that name the faulty line.
 #include "engines/shapes/read_outline.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/// Area, centroid and second moment against closed forms, and their laws under shifts, turns and scales.
+/// Area, centroid and second moment against closed forms, and how they change with shifts, rotations and scaling.
 #include "engines/shapes/solid.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Solid, does_not_depend_on_where_the_shape_stands_or_how_it_is_turned)
 		const Outline shape(star(seed));
 		const Vector2r shift(30 - 1.0 * seed, 17);
 		const Solid here = solid_of(shape), there = solid_of(shape.turned(0.1 * seed).seen_from(shift));
-		EXPECT_NEAR(there.area, here.area, 1e-12 * here.area);  // shifts of 10 extents cost a digit or two
+		EXPECT_NEAR(there.area, here.area, 1e-12 * here.area);  // a shift by 10 extents costs one or two digits
 		EXPECT_NEAR(there.second_moment, here.second_moment, 1e-12 * here.second_moment);
 		EXPECT_NEAR((there.centroid + shift - Eigen::Rotation2D<Real>(0.1 * seed) * here.centroid).norm(), 0, 1e-12);
 	}
@@ -49,7 +49,7 @@ TEST(Solid, keeps_its_digits_far_from_the_origin)
 		const Vector2r shift(5e6, -3.5e6);
 		for (Vector2r& v : near) {
 			far.push_back(v + shift);
-			v = far.back() - shift;  // what is left of the digits out there
+			v = far.back() - shift;  // the vertex with the digits that are left at this distance
 		}
 		const Solid here = solid_of(Outline(near)), there = solid_of(Outline(far));
 		EXPECT_NEAR(there.area, here.area, 1e-13 * here.area);
@@ -68,7 +68,7 @@ TEST(Solid, of_a_sliver_keeps_its_digits)
 
 TEST(Solid, of_a_polygon_tends_to_the_disk_as_its_corners_grow_in_number)
 {
-	// An inscribed n-gon misses the area by (2/3)(pi/n)^2: 5.1e-5 for the 360 that a disk is drawn with.
+	// The area of an inscribed n-gon is too small by (2/3)(pi/n)^2: 5.1e-5 for the 360 corners with which a disk is drawn.
 	const Outline disk = Outline::disk(2);
 	EXPECT_NEAR(solid_of(Outline(disk.vertices())).area / pi, 1 - 2.0 / 3 * std::pow(pi / 360, 2), 1e-8);
 }

@@ -1,4 +1,4 @@
-/// What an edge forbids of a line or an arc, against the distance of points along them.
+/// Parts of a line or an arc that are too close to an edge, compared with the distances of points along them.
 #include "engines/shapes/stretch.hpp"
 
 #include <gtest/gtest.h>
@@ -36,12 +36,12 @@ TEST(Stretch, is_forbidden_just_where_its_points_are_closer_than_the_reach)
 		const auto found = closer_than(1, stretch, a, b);
 		for (int k = 0; k <= 10; ++k) {
 			const Real along = stretch.length * k / 10, off = distance_to_segment(stretch.at(along), a, b) - 1;
-			if (std::abs(off) < 1e-9) continue;  // either answer is right within round-off
+			if (std::abs(off) < 1e-9) continue;  // within round-off of the limit both results are right
 			ASSERT_EQ(holds(found, along, 2 * pi * stretch.radius), off < 0) << trial << " at " << k;
 			forbidden += off < 0;
 		}
 	}
-	EXPECT_GT(forbidden, 20000);  // both answers occur
+	EXPECT_GT(forbidden, 20000);  // both results occur
 	EXPECT_LT(forbidden, 200000);
 }
 

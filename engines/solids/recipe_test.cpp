@@ -1,4 +1,4 @@
-/// Recipes: what comes back of them, and how damaged ones are refused.
+/// Recipes bring back the same surface; damaged ones are refused.
 #include "engines/solids/recipe.hpp"
 
 #include "engines/geometry/outline_surface.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace geometry;
 
-/// Answers at random points, all digits compared.
+/// Compares distances and normals at random points to the last digit.
 void expect_same(const Surface<3>& a, const Surface<3>& b)
 {
 	RandomPoints<3> random(3);
@@ -76,7 +76,7 @@ TEST(Recipe, KeepsSampledDistances)
 	RandomPoints<3> random(0.9);
 	for (int i = 0; i < 100; ++i) {
 		const Vec<3> at = random();
-		// Spacings of 1.3 radii: cubic interpolation is far off, but follows the ball.
+		// With a spacing of 1.3 radii cubic interpolation is inaccurate, but still follows the ball.
 		ASSERT_NEAR(sampled->nearest(at).distance, ball.nearest(at).distance, 0.2) << i;
 	}
 }

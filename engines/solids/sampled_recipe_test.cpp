@@ -1,4 +1,4 @@
-/// Which sampled functions pass for distances.
+/// Sampled functions that are accepted as distances, and others that are refused.
 #include "engines/solids/sampled_recipe.hpp"
 
 #include "engines/geometry/solids.hpp"
@@ -41,7 +41,7 @@ TEST(SampledRecipe, IsTheSampledDistance)
 
 TEST(SampledRecipe, TakesABallOfFourSpacings)
 {
-	// As coarse as the limit of the slope says.
+	// As coarse as the limit of the slope allows.
 	const SampleGrid<3> grid = around(2, 17);
 	EXPECT_NO_THROW(sampled_recipe(grid, samples(grid, [](const Vec<3>& at) { return norm(at) - 1; })));
 }

@@ -14,7 +14,7 @@
 namespace graindrive::continuum {
 namespace {
 
-// A field of random numbers on the open cells, without mean over each part.
+// A field of random numbers on the open cells with mean zero over each part.
 Field<double> random_field(const FivePoint& matrix, unsigned seed)
 {
 	const SplitGrid& grid = matrix.grid();
@@ -67,7 +67,8 @@ int iterations_of_multigrid(int n, double density_ratio)
 	return solver->solve(drum.right_side(), p, 1e-8).iterations;
 }
 
-// A cycle takes the error down by 10 for each iteration, on any grid: 8 to 10 iterations. A coarse operator that is not P^T A P shows here.
+// Each iteration reduces the error by a factor of 10 on any grid, so 8 to 10 are needed. A coarse operator other than P^T A P
+// would need more.
 TEST(Multigrid, NeedsTheSameIterationsForAnyGridAndDensity)
 {
 	for (const double ratio : { 1.0, 1e3, 1e6 })
@@ -90,7 +91,7 @@ TEST(Multigrid, AlsoSolvesThinAndOddGrids)
 	}
 }
 
-// A restarted run makes its solver anew: that must not change a bit.
+// A restarted run has a new solver, which must not change a bit.
 TEST(Multigrid, RemembersNothingOfEarlierSteps)
 {
 	DrumExample drum;
@@ -127,7 +128,7 @@ TEST(Extrapolation, PredictsPolynomialsOfItsDegree)
 			past.remember(at(t));
 			past.predict(guess);
 			if (t >= degree) {
-				EXPECT_EQ(guess, at(t + 1)) << degree;  // small integers and halves: no rounding
+				EXPECT_EQ(guess, at(t + 1)) << degree;  // small integers and halves have no round-off
 			}
 			EXPECT_EQ(past.solution(0), at(t));
 		}
@@ -140,7 +141,7 @@ TEST(Extrapolation, PredictsPolynomialsOfItsDegree)
 	EXPECT_TRUE(mentions(complaint([] { Extrapolation(3); }), "got 3"));
 }
 
-// Steps in which the surface turns by 0.01 cells: the last pressure saves iterations, a linear guess saves more.
+// The surface turns by 0.01 cells in a step: starting from the last pressure saves iterations, a linear extrapolation saves more.
 TEST(Extrapolation, SavesIterations)
 {
 	int iterations[3] = {};

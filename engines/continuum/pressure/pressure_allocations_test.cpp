@@ -1,4 +1,4 @@
-/// A solver that has seen its grid allocates no memory in a step.
+/// After the first step on a grid a solver allocates no memory.
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <new>
@@ -19,7 +19,7 @@ void* counted(std::size_t size, std::size_t alignment)
 }
 }  // namespace
 
-// All of this program's memory comes through here. Eigen takes its own from malloc: only what is new in C++ counts.
+// Counts all allocations by C++'s `new`. Eigen calls malloc directly and is not counted.
 void* operator new(std::size_t size) { return counted(size, 16); }
 void* operator new(std::size_t size, std::align_val_t alignment) { return counted(size, std::size_t(alignment)); }
 void operator delete(void* memory) noexcept { std::free(memory); }

@@ -1,4 +1,4 @@
-/// Every solver against closed forms and a dense solve; what is refused; that nothing is left behind from step to step.
+/// Every solver against closed forms and a dense solve; refused input; one solve must not influence the next.
 #include "engines/continuum/pressure/pressure_solver.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -14,7 +14,8 @@
 namespace graindrive::continuum {
 namespace {
 
-// The solution of least norm, which has mean zero on every part; null space where eigenvalues are 0 but for rounding.
+// The solution of least norm, which has mean zero on every part. Eigenvalues that are 0 within round-off belong to the null
+// space.
 Eigen::VectorXd least_solution(const FaceCoefficients& b, const std::vector<double>& rhs)
 {
 	const long n = long(rhs.size());
@@ -46,7 +47,7 @@ std::vector<double> solved(const std::string& name, const FaceCoefficients& b, c
 class EverySolver : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(By, EverySolver, testing::ValuesIn(pressure_solvers()), [](const auto& info) { return info.param; });
 
-// The residual is 1e-12; the condition of these matrices, up to about 1e4, multiplies it.
+// The error is the residual, 1e-12, times the condition number of these matrices, up to about 1e4.
 TEST_P(EverySolver, AgreesWithADenseSolveWhateverTheParts)
 {
 	const int sizes[][2] = { { 1, 1 }, { 1, 9 }, { 10, 1 }, { 2, 2 }, { 3, 5 }, { 8, 8 }, { 17, 6 }, { 11, 19 } };
@@ -63,8 +64,8 @@ TEST_P(EverySolver, AgreesWithADenseSolveWhateverTheParts)
 		}
 }
 
-// Two layers, b_1 below and b_2 above y = 1/2, and rhs = cos(pi y): b p' = sin(pi y)/pi, so p = C - cos(pi y)/(pi^2 b), the same on both
-// sides of the surface where the cosine is 0. The face in the surface has the harmonic mean.
+// Two layers, b_1 below and b_2 above y = 1/2, and rhs = cos(pi y): b p' = sin(pi y)/pi, so p = C - cos(pi y)/(pi^2 b), the same
+// on both sides of the surface where the cosine is 0. The face in the surface has the harmonic mean.
 double error_of_layers(const std::string& name, int n)
 {
 	const double b_1 = 1, b_2 = 1000, constant = (1 / b_1 - 1 / b_2) / (M_PI * M_PI * M_PI);
@@ -89,7 +90,7 @@ double error_of_layers(const std::string& name, int n)
 TEST_P(EverySolver, FindsThePressureInTwoLayersAtSecondOrder)
 {
 	const double coarse = error_of_layers(GetParam(), 20), fine = error_of_layers(GetParam(), 40);
-	EXPECT_LT(coarse, 3e-4);  // p is about 0.1 in size; second differences are wrong by (pi/20)^2/12, 0.2 %
+	EXPECT_LT(coarse, 3e-4);  // p is about 0.1; the relative error of second differences is (pi/20)^2/12 = 0.2 %
 	EXPECT_NEAR(coarse / fine, 4, 0.05);
 }
 
@@ -117,7 +118,7 @@ double error_of_smooth(const std::string& name, int n)
 TEST_P(EverySolver, FindsASmoothPressureAtSecondOrder)
 {
 	const double coarse = error_of_smooth(GetParam(), 24), fine = error_of_smooth(GetParam(), 48);
-	EXPECT_LT(coarse, 0.02);  // (2 pi/24)^2/12 is 0.6 %
+	EXPECT_LT(coarse, 0.02);  // the relative error of second differences is (2 pi/24)^2/12 = 0.6 %
 	EXPECT_NEAR(coarse / fine, 4, 0.25);
 }
 
@@ -134,7 +135,7 @@ TEST_P(EverySolver, MeetsTheToleranceInTheDrum)
 		const double residual = relative_residual(b, rhs, p);
 		EXPECT_LE(residual, tolerance);
 		EXPECT_NEAR(report.residual, residual,
-			1e-9);  // p is about 100 times what its second difference is, and mean values are taken off
+			1e-9);  // p is about 100 times its second difference, and its means are subtracted
 		EXPECT_LT(report.outside, 1e-12);
 	}
 }
@@ -243,7 +244,7 @@ TEST(PressureSolver, SaysThatItCannotBeatRounding)
 	solver->update(drum.coefficients());
 	std::vector<double> p(1600);
 	EXPECT_THROW(solver->solve(drum.right_side(), p, 1e-18), std::runtime_error);
-	EXPECT_LT(relative_residual(drum.coefficients(), drum.right_side(), p), 1e-8);  // p keeps the best
+	EXPECT_LT(relative_residual(drum.coefficients(), drum.right_side(), p), 1e-8);  // p holds the best solution
 }
 
 }  // namespace

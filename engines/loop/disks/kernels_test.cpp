@@ -1,4 +1,4 @@
-/// The inner functions of every processor generation compute the same: AVX2 and AVX-512 to the last bit, portable code to round-off.
+/// The kernels for all processors give the same results: AVX2 and AVX-512 to the last bit, portable code within round-off.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ const ContactLaw all_laws[] = { hertz(0.3, 500), laws::hertz_restitution(2e5, 0.
 
 static_assert(std::size(all_laws) == laws::Laws::size, "every law of the registry stands here once");
 
-/// A settling crowd, periodic in x, above a row of frozen disks, with a free clump of two.
+/// Settling disks, periodic in x, above a row of frozen disks, with a free clump of two.
 Scene<2> settling(const ContactLaw& law, Precision precision, bool friction)
 {
 	constexpr int side = 14;
@@ -41,7 +41,7 @@ Scene<2> settling(const ContactLaw& law, Precision precision, bool friction)
 	return s;
 }
 
-/// Positions, velocities and spins after some steps on the kernels of a processor; nothing if this machine has not got them.
+/// Positions, velocities and spins after some steps with a processor's kernels; nothing if this machine cannot run them.
 std::optional<std::vector<double>> moved(const Scene<2>& scene, const char* processor, long steps)
 {
 	setenv("GRAINDRIVE_PROCESSOR", processor, 1);
@@ -92,7 +92,8 @@ TEST(Kernels, portable_code_computes_the_same_to_round_off)
 		ASSERT_TRUE(plain);
 		const auto fused = moved(scene, "avx2", 100);
 		if (!fused) return;
-		// Fused products round once where plain ones round twice; a hundred steps of collisions make that grow. Velocities and spins are 1.
+		// A fused multiply-add rounds once, a product and a sum round twice. Collisions over a hundred steps let this difference
+		// grow; velocities and spins are of order 1.
 		const double tolerance = precision == Precision::single ? 1e-3 : 1e-10;
 		for (std::size_t k = 0; k < plain->size(); ++k) ASSERT_NEAR((*plain)[k], (*fused)[k], tolerance) << k;
 	});

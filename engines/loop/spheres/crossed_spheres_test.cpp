@@ -1,4 +1,5 @@
-/// All features of a scene of spheres crossed at small size: law, friction, rotation, bodies, walls, solids, pushes, precision, threads.
+/// All features of a scene of spheres combined in small scenes: law, friction, rotation, bodies, walls, solids, pushes,
+/// precision, threads.
 #include <gtest/gtest.h>
 
 #include "engines/base/temporary_file.hpp"
@@ -20,7 +21,8 @@ struct Features {
 	bool friction, rotation, clump, driven, frozen, walls, solids, pushes;
 };
 
-/// Calls visit(features) for each of them; pushes go with the parity of the others, so that any seven of the eight are crossed.
+/// Calls visit(features) for each combination. Pushes are the parity of the others, so that all combinations of any seven of the
+/// eight occur.
 template <class Visitor>
 void cross(Visitor&& visit)
 {
@@ -58,7 +60,7 @@ std::size_t nearest_free(const Scene<3>& s, const Vec<3>& to)
 
 void give(Scene<3>& s, std::size_t grain, int body) { s.grains[grain].body = body, s.grains[grain].mass = s.bodies[body].mass; }
 
-/// A clump that tumbles, and a sphere that slides along x and turns about y alone, under a load that pushes it on.
+/// A clump that tumbles, and a sphere with a load that may move along x and turn about y only.
 void add_clump(Scene<3>& s)
 {
 	RigidBody<3> tumbling;
@@ -77,7 +79,7 @@ void add_clump(Scene<3>& s)
 	give(s, i, add(s, guided));
 }
 
-/// The sides of a box that is periodic in x: a floor that slides, a lid under pressure, a side that closes in, one that rests.
+/// The walls of a box that is periodic in x: a floor that slides, a lid under pressure, a side that moves inwards, one at rest.
 void add_walls(Scene<3>& s)
 {
 	s.cell.periodic[1] = false;
@@ -89,7 +91,7 @@ void add_walls(Scene<3>& s)
 	s.walls = { floor, lid, left, right };
 }
 
-/// An endless cylinder along x that rises and turns, and a ball, with a sphere glued to it, that is free.
+/// An endless cylinder along x that rises and turns, and a free ball with a sphere glued to it.
 void add_solids(Scene<3>& s)
 {
 	const double radius = 0.9;
@@ -104,7 +106,7 @@ void add_solids(Scene<3>& s)
 	s.grains = outside;
 	s.solids.push_back({ add(s, roller), geometry::shared(geometry::Cylinder({}, { 1, 0, 0 }, radius)), "" });
 	s.solids.push_back({ add(s, ball), geometry::shared(geometry::Ball<3>({}, 0.7)), "" });
-	if (!s.walls.empty()) return;  // it would lie above the lid
+	if (!s.walls.empty()) return;  // the ball would lie above the lid
 	s.grains.push_back(sphere({ 2.6, 1, 5 }, 0.3));
 	give(s, s.grains.size() - 1, int(s.bodies.size()) - 1);
 }
@@ -136,7 +138,7 @@ std::vector<Push<3>> pushes_in(const Scene<3>& s)
 	return { { one, { 1, -2, 0.5 }, { 0.1, 0, -0.2 } }, { other, { 0, 0.3, -1 }, { 0, 0.1, 0 } } };
 }
 
-/// A loop with its pushes, after some steps.
+/// A loop after some steps, with or without pushes.
 std::unique_ptr<Stepper<3>> ran(const Scene<3>& s, bool pushed, int n = steps)
 {
 	auto loop = std::make_unique<Stepper<3>>(s);
@@ -146,10 +148,10 @@ std::unique_ptr<Stepper<3>> ran(const Scene<3>& s, bool pushed, int n = steps)
 }
 
 struct Difference {
-	double motion = 0, force = 0;  // the largest of any number
+	double motion = 0, force = 0;  // largest differences of any component
 };
 
-/// Of grains (by the nearest image), bodies and walls.
+/// The differences of grains (by the nearest image), bodies and walls.
 Difference difference(const Stepper<3>& loop, const PlainSpheres& plain)
 {
 	Difference most;
@@ -188,17 +190,18 @@ TEST(CrossedSpheres, follow_the_plain_loop_on_threads_and_in_single_precision)
 		if (f.pushes) plain.pushes = pushes_in(scene);
 		for (int k = 0; k < steps; ++k) plain.step();
 		const auto one = ran(scene, f.pushes);
-		scene.threads = crossed++ % 5 == 0 ? 3 : 1;  // waiting threads cost a busy machine much; 5 is prime to the others
+		scene.threads = crossed++ % 5 == 0 ? 3 : 1;  // rarely, since threads are slow on a busy machine
 		const auto three = ran(scene, f.pushes);
 		scene.threads = 1, scene.precision = Precision::single;
 		const auto single = ran(scene, f.pushes);
 		const Difference in_double = difference(*one, plain), in_single = difference(*single, plain);
-		// Round-off of 60 steps, and how kernels turn springs: they take the last normal from a straight way and one distance for two
-		// steps. Where spheres pass at 3 m/s that turns a spring by 1e-10 too much; a member of a body that turns goes along an arc,
-		// which is (w dt)^2 arm / 2 = 1e-7 of a rad. Forces are of order 10, velocities of order 1.
+		// Round-off of 60 steps, and the kernels' approximation of how springs turn: they compute the last normal as if spheres
+		// had moved straight, with one distance for two steps. At 3 m/s this turns a spring by 1e-10 rad too much; for members of
+		// turning bodies, which move along arcs, the error is (w dt)^2 arm / 2 = 1e-7 rad. Forces are of order 10, velocities of
+		// order 1.
 		EXPECT_LT(in_double.motion, 1e-9);
 		EXPECT_LT(in_double.force, 1e-8);
-		EXPECT_LT(in_single.motion, 1e-3);  // 6e-8 of the forces over masses of a half
+		EXPECT_LT(in_single.motion, 1e-3);  // round-off of 6e-8 of the forces, over masses of 0.5
 		EXPECT_LT(in_single.force, 5e-3);
 		EXPECT_EQ(numbers(*one), numbers(*three));
 	});

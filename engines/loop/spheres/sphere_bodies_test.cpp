@@ -1,4 +1,4 @@
-/// Rigid bodies in space: tops against closed forms and Euler's equations, bodies with one free axis, clumps that are hit.
+/// Rigid bodies in space: tops against closed forms and Euler's equations, bodies with one free axis, clumps in collisions.
 #include <gtest/gtest.h>
 
 #include "engines/geometry/solids.hpp"
@@ -11,7 +11,7 @@ using geometry::Turn;
 
 namespace {
 
-/// A body in empty space that answers to all forces and torques.
+/// A body that responds to all forces and torques.
 RigidBody<3> free_body(double mass, const Vec<3>& inertia)
 {
 	RigidBody<3> body;
@@ -33,7 +33,7 @@ Scene<3> alone(const RigidBody<3>& body, double dt)
 	return s;
 }
 
-/// I w of a body, in space.
+/// Angular momentum I w of a body in the world's frame.
 Vec<3> angular_momentum(const RigidBody<3>& body)
 {
 	Vec<3> in_frame = body.turn.undo(body.spin);
@@ -44,7 +44,8 @@ Vec<3> angular_momentum(const RigidBody<3>& body)
 /// Angle between two orientations [rad].
 double angle_between(const Turn<3>& a, const Turn<3>& b) { return 2 * norm(b.then(a.inverse()).u); }
 
-/// Without torque, from the body's own L: dR/dt = w x R, w = R I^-1 R^T L, by Runge and Kutta in steps that are too small to matter.
+/// The orientation after torque-free motion with the body's L: dR/dt = w x R, w = R I^-1 R^T L, by Runge-Kutta with very small
+/// steps.
 Turn<3> turned_by_euler(const RigidBody<3>& body, double time)
 {
 	const Vec<3> momentum = angular_momentum(body);
@@ -72,7 +73,8 @@ Turn<3> turned_by_euler(const RigidBody<3>& body, double time)
 
 TEST(SphereBodies, a_symmetric_top_precesses_as_euler_says)
 {
-	// w = L/I_1 + (1 - I_3/I_1) w_3 e_3: the axis goes round L at |L|/I_1, while the body turns about it at (1 - I_3/I_1) w_3.
+	// w = L/I_1 + (1 - I_3/I_1) w_3 e_3: the symmetry axis turns about L at |L|/I_1, and the body about this axis at (1 -
+	// I_3/I_1) w_3.
 	RigidBody<3> top = free_body(1, { 0.5, 0.5, 0.9 });
 	top.spin = { 1, 2, -1.5 };
 	const Vec<3> momentum = angular_momentum(top);
@@ -85,19 +87,19 @@ TEST(SphereBodies, a_symmetric_top_precesses_as_euler_says)
 		loop.step(std::lround(time / dt));
 		const RigidBody<3>& now = loop.bodies()[0];
 		error[k] = angle_between(now.turn, exact);
-		EXPECT_LT(norm(now.momentum - momentum), 1e-15 * norm(momentum));  // nothing is added to it
-		// The axis keeps its angle with L, to the same order.
+		EXPECT_LT(norm(now.momentum - momentum), 1e-15 * norm(momentum));  // without torque L stays
+		// The axis keeps its angle to L with an error of the same order.
 		const Vec<3> axis = now.turn.apply({ 0, 0, 1 }), before = top.turn.apply({ 0, 0, 1 });
 		EXPECT_NEAR(dot(axis, momentum), dot(before, momentum), 1e-4);
 	}
-	EXPECT_LT(error[1], 1e-4);  // (w dt)^2 = 1e-5 of the 13 rad that it turned
+	EXPECT_LT(error[1], 1e-4);  // (w dt)^2 = 1e-5 of the 13 rad by which it turned
 	EXPECT_NEAR(error[0] / error[1], 4, 0.05);
 }
 
 TEST(SphereBodies, a_body_without_symmetry_tumbles_by_eulers_equations)
 {
 	RigidBody<3> body = free_body(1, { 0.3, 0.5, 0.9 });
-	body.spin = body.turn.apply({ 0.02, 2, 0.01 });  // about the middle axis: it turns over
+	body.spin = body.turn.apply({ 0.02, 2, 0.01 });  // rotation about the middle axis is unstable: the body turns over
 	const double time = 8;
 	const Turn<3> exact = turned_by_euler(body, time);
 	double error[2];
@@ -109,7 +111,7 @@ TEST(SphereBodies, a_body_without_symmetry_tumbles_by_eulers_equations)
 			loop.step(std::lround(time / 20 / dt));
 			lowest = std::min(lowest, loop.bodies()[0].turn.undo(loop.bodies()[0].spin)[1]);
 		}
-		EXPECT_LT(lowest, -1.5);  // it has
+		EXPECT_LT(lowest, -1.5);  // the body has turned over
 		error[k] = angle_between(loop.bodies()[0].turn, exact);
 		EXPECT_LT(norm(loop.bodies()[0].momentum - angular_momentum(body)), 1e-14);
 	}
@@ -128,7 +130,7 @@ TEST(SphereBodies, about_one_free_axis_the_moment_about_it_decides)
 		for (int q = 0; q < 3; ++q) moment += body.inertia[q] * axis[q] * axis[q];
 		Stepper<3> loop(alone(body, 1e-3));
 		loop.step(1000);
-		// The moment about an axis stays while the body turns about it: w = T t/I, and angle = T t (t + dt)/2I from w = 0 at -dt/2.
+		// The moment of inertia about the axis does not change: w = T t/I, and angle = T t (t + dt)/2I from w = 0 at -dt/2.
 		const RigidBody<3>& now = loop.bodies()[0];
 		const double rate = body.push_torque[k] / moment;
 		EXPECT_LT(norm(now.spin - rate * Vec<3>::along(k)), 1e-12);
@@ -166,7 +168,7 @@ TEST(SphereBodies, random_states_keep_momentum_and_angular_momentum_but_for_the_
 		s.bodies[1].place = { 2, 2, 4.2 }, s.bodies[1].velocity = { 0, 0, -0.5 }, s.bodies[1].spin = { 1, 1, 3 };
 		for (Grain<3>& g : s.grains) g.body = free_grain;
 		for (const int member : { 21, 22, 25, 37 }) s.grains[member].body = 0, s.grains[member].mass = 1.5;
-		s.solids = { { 1, geometry::shared(geometry::Ball<3>({}, 0.9)), "" } };  // it lies on four spheres
+		s.solids = { { 1, geometry::shared(geometry::Ball<3>({}, 0.9)), "" } };  // the ball lies on four spheres
 		const auto sums = [&](auto&& grain, const auto& body) {
 			Vec<3> p, l;
 			for (std::size_t i = 0; i < s.grains.size(); ++i) {
@@ -196,17 +198,17 @@ TEST(SphereBodies, random_states_keep_momentum_and_angular_momentum_but_for_the_
 		const auto after = now();
 		EXPECT_GT(norm(loop.bodies()[1].velocity - s.bodies[1].velocity), 0.01) << seed;
 		EXPECT_GT(norm(overlap_torque), 1e-6);
-		// Sums of some hundred terms of size 10, with a round-off each; the torque of the overlaps is that of the plain loop, whose
-		// springs of the clump's members turn by 1e-7 otherwise.
+		// Sums of some hundred terms of size 10, each with its round-off. The torque of the overlaps is taken from the plain
+		// loop, whose springs at members of the clump differ by 1e-7.
 		EXPECT_LT(norm(after.first - before.first), 1e-12) << seed;
 		EXPECT_LT(norm(after.second - before.second - overlap_torque), 1e-10) << seed;
 	}
 }
 
-/// However fast it is: a selection of pairs must not outlast what the search has found.
+/// At any speed: a selection of pairs must not be used longer than the search is valid.
 TEST(SphereBodies, a_driven_sphere_meets_what_lies_in_its_way)
 {
-	for (const double per_step : { 0.01, 0.1, 0.2, 0.4, 0.8 })  // of a radius
+	for (const double per_step : { 0.01, 0.1, 0.2, 0.4, 0.8 })  // [radii]
 		for (const double ahead : { 1.2, 2., 8. }) {            // [m]
 			RigidBody<3> driven;
 			Scene<3> s = alone(driven, 1e-4);
@@ -216,7 +218,7 @@ TEST(SphereBodies, a_driven_sphere_meets_what_lies_in_its_way)
 			s.grains.back().velocity = {};
 			Stepper<3> loop(s);
 			loop.guarding().every = 0;
-			const double way = ahead;  // to its centre
+			const double way = ahead;  // to the sphere's centre
 			loop.step(long(way / (s.bodies[0].velocity[0] * s.dt)));
 			EXPECT_GT(loop.grain(1).place[0], ahead) << per_step << " R a step, " << ahead << " m ahead";
 		}

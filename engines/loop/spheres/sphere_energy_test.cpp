@@ -1,4 +1,4 @@
-/// The energy ledger of spheres closes, and does not where something goes astray.
+/// The energy ledger of spheres closes, and does not close if some energy is not entered.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -17,9 +17,9 @@ namespace {
 const ContactLaw all_laws[] = { laws::HertzHistory<Real>{ 2e4, 2.46e4, 50, 50, 0.3 }, laws::hertz_restitution(2e4, 0.3, 0.7, 0.4),
 	laws::spring_dashpot(1e4, 3e3, 0.8, 0.5) };
 
-constexpr double round_off = 1e-12;  // sums of some thousand steps over some hundred entries, each rounded to 1e-16 of it
-// Kernels turn a spring as if both spheres went straight since the last step. A member of a body that turns by 1 rad/s goes along an arc:
-// 2e-8 of a rad a step, which is 1e-12 of the energy turned over.
+constexpr double round_off = 1e-12;  // sums over some 1000 steps of some 100 entries with a relative round-off of 1e-16
+// Kernels turn a spring as if both spheres had moved straight since the last step. A member of a body that turns by 1 rad/s moves
+// along an arc: the angle differs by 2e-8 a step, which is 1e-12 of the total work.
 constexpr double with_arcs = 1e-11;
 
 double closure(const Stepper<3>& loop)
@@ -34,8 +34,8 @@ int add(Scene<3>& s, const RigidBody<3>& body)
 	return int(s.bodies.size()) - 1;
 }
 
-/// A bed between a floor that slides and a lid under pressure, periodic in x and y with gravity along x; in it a clump that is driven, a
-/// sphere that may slide along z and turn about y, pushed on by a load, and two spheres with pushes.
+/// A bed between a floor that slides and a lid under pressure, periodic in x and y, with gravity also along x. It holds a driven
+/// clump, a sphere with a load that may move along z and turn about y only, and two spheres with pushes.
 Scene<3> walled_bed(const ContactLaw& law)
 {
 	Scene<3> s = ball_crowd(5, 3, 8, 0.5);
@@ -57,7 +57,7 @@ Scene<3> walled_bed(const ContactLaw& law)
 	return s;
 }
 
-/// The same around a roller that turns, under a ball that is free.
+/// The same with a roller that turns and a free ball as solids.
 Scene<3> bed_with_solids(const ContactLaw& law)
 {
 	Scene<3> s = walled_bed(law);
@@ -107,7 +107,7 @@ TEST(SphereEnergy, closes_with_a_roller_and_a_free_ball)
 		loop.track_energy(true);
 		const Vec<3> before = loop.bodies()[3].spin;
 		loop.step(5000);
-		EXPECT_GT(std::abs(loop.energy_ledger()->work_by_body()[2]), 1e-3) << law.index();  // the roller's
+		EXPECT_GT(std::abs(loop.energy_ledger()->work_by_body()[2]), 1e-3) << law.index();  // work of the roller
 		EXPECT_GT(norm(loop.bodies()[3].spin - before), 1e-3);
 		EXPECT_LT(closure(loop), with_arcs) << law.index();
 	}
@@ -120,7 +120,8 @@ TEST(SphereEnergy, closes_where_it_is_opened_in_mid_run)
 		loop.step(2000);
 		loop.track_energy(true);
 		loop.step(3000);
-		// It does not know how springs turned in the step before the first: by 1e-4 of a rad, which leaves a part of 1e-8 out of a plane.
+		// The ledger lacks the rotation of springs in the step before the first, 1e-4 rad, which leaves a relative part of 1e-8
+		// off the plane.
 		EXPECT_LT(closure(loop), 1e-10) << law.index();
 	}
 }

@@ -1,4 +1,4 @@
-/// Two spheres meet: held to a plain loop, to the restitution that was asked for, and to what may not change.
+/// Impacts of two spheres: against a plain loop, the prescribed restitution, and conservation laws.
 #include <gtest/gtest.h>
 
 #include "engines/loop/spheres/plain_spheres.hpp"
@@ -21,7 +21,7 @@ Scene<3> two(const Grain<3>& a, const Grain<3>& b, const ContactLaw& law)
 	return s;
 }
 
-/// An oblique impact of unequal spheres that spin about every axis, off any axis of the box.
+/// An oblique impact of unequal spheres that spin about all axes, along no axis of the box.
 Scene<3> oblique(const ContactLaw& law)
 {
 	Grain<3> a = sphere({ 0.1, -0.2, 0.3 }, 0.5), b = sphere(a.place + (0.851 / 3) * Vec<3>{ 2, -1, 2 }, 0.35, 2);
@@ -44,10 +44,11 @@ TEST(SphereImpact, oblique_and_spinning_as_in_a_plain_loop)
 			const double before = plain.kinetic_energy();
 			for (int k = 0; k < 4000; ++k) plain.step();
 			loop.step(4000);
-			EXPECT_GT(std::abs(plain.kinetic_energy() - before), 1e-3 * before);  // they met
+			EXPECT_GT(std::abs(plain.kinetic_energy() - before), 1e-3 * before);  // the spheres have collided
 			for (int i = 0; i < 2; ++i) {
 				const Grain<3> one = loop.grain(i), &other = plain.s.grains[i];
-				// Some thousand steps of contact, each with a round-off of 1e-16 and a spring turned by 1e-5 (length to its fourth power).
+				// Some thousand steps of contact, each with a round-off of 1e-16 and a spring turned by 1e-5 rad (its length
+				// changes by the fourth power).
 				EXPECT_LT(norm(one.velocity - other.velocity), 1e-12) << i;
 				EXPECT_LT(norm(one.spin - other.spin), 1e-11) << i;
 				EXPECT_LT(norm(one.place - other.place), 1e-12) << i;
@@ -57,8 +58,9 @@ TEST(SphereImpact, oblique_and_spinning_as_in_a_plain_loop)
 
 TEST(SphereImpact, normal_restitution_is_what_was_asked_for)
 {
-	// A damped oscillator that parts when the overlap is zero again would give e; the law lets go when the force is, and Hertz is not
-	// linear: Tsuji's damping keeps e within a per cent of any speed. The linear law: within the same, by when it lets go.
+	// The damping follows from a linear oscillator whose contact ends when the overlap is zero again. Here the contact ends when
+	// the force is zero, and Hertz's force is not linear; with Tsuji's damping e differs by less than a percent at any speed, and
+	// so with the linear law.
 	for (const double e : { 0.5, 0.7, 0.9 })
 		for (const double speed : { 0.01, 1.0 }) {
 			Grain<3> a = sphere({ 0, 0, 0 }, 0.5), b = sphere({ 0, 0, 1.0001 }, 0.5);
@@ -82,7 +84,7 @@ TEST(SphereImpact, without_friction_and_damping_energy_comes_back)
 	const double before = loop.kinetic_energy();
 	loop.step(50000);
 	EXPECT_GT(norm(loop.grain(0).velocity), 0.1);
-	EXPECT_NEAR(loop.kinetic_energy() / before, 1, 1e-8);  // leapfrog: the error of an impact is of the order (dt / duration)^2
+	EXPECT_NEAR(loop.kinetic_energy() / before, 1, 1e-8);  // leapfrog's error of an impact is of order (dt / duration)^2
 }
 
 TEST(SphereImpact, a_held_sphere_feels_the_opposite_force_at_its_own_surface)

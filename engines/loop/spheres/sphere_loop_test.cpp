@@ -1,4 +1,5 @@
-/// Many spheres: as in a plain loop over all pairs, the same bits on any number of threads and wide processor, and what is conserved.
+/// Many spheres: against a plain loop over all pairs, the same bits on any number of threads and with AVX2 or AVX-512,
+/// conservation laws.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -16,7 +17,7 @@ namespace {
 const ContactLaw all_laws[] = { laws::HertzHistory<Real>{ 2e4, 2.46e4, 50, 50, 0.3 }, laws::hertz_restitution(2e4, 0.3, 0.7, 0.4),
 	laws::spring_dashpot(1e4, 3e3, 0.8, 0.5) };
 
-/// Numbers after some steps on the kernels of a processor; nothing if this machine has not got them.
+/// Positions, velocities and spins after some steps with a processor's kernels; nothing if this machine cannot run them.
 std::optional<std::vector<double>> moved(const Scene<3>& scene, const char* processor, long steps)
 {
 	setenv("GRAINDRIVE_PROCESSOR", processor, 1);
@@ -56,7 +57,7 @@ TEST(SphereLoop, five_hundred_spheres_as_in_a_plain_loop)
 	for (int k = 0; k < 2000; ++k) plain.step();
 	loop.step(2000);
 	EXPECT_GT(loop.searches_done(), 1);
-	// Round-off of 1e-16 a step, which collisions make grow.
+	// A round-off of 1e-16 a step, which collisions let grow.
 	EXPECT_NEAR(loop.kinetic_energy() / plain.kinetic_energy(), 1, 1e-9);
 	for (std::size_t i = 0; i < loop.size(); ++i)
 		if (scene.grains[i].body != free_grain) {
@@ -97,7 +98,8 @@ TEST(SphereLoop, portable_code_computes_the_same_to_round_off)
 		ASSERT_TRUE(plain);
 		const auto fused = moved(scene, "avx2", 100);
 		if (!fused) return;
-		// Fused products round once where plain ones round twice; a hundred steps of collisions make that grow. Velocities and spins are 1.
+		// A fused multiply-add rounds once, a product and a sum round twice. Collisions over a hundred steps let this difference
+		// grow; velocities and spins are of order 1.
 		const double tolerance = precision == Precision::single ? 1e-3 : 1e-10;
 		for (std::size_t k = 0; k < plain->size(); ++k) ASSERT_NEAR((*plain)[k], (*fused)[k], tolerance) << k;
 	});
@@ -131,7 +133,7 @@ TEST(SphereLoop, momentum_stays_and_angular_momentum_changes_by_the_torque_of_th
 	loop.step(steps);
 	const auto after = sums([&](std::size_t i) { return loop.grain(i); }, loop.size());
 	ASSERT_GT(norm(overlap_torque), 1e-6);
-	// Sums of some hundred terms of size 10, with a round-off each.
+	// Sums of some hundred terms of size 10, each with its round-off.
 	EXPECT_LT(norm(after.first - before.first), 1e-12);
 	EXPECT_LT(norm(after.second - before.second - overlap_torque), 1e-11);
 }
@@ -179,7 +181,8 @@ TEST(SphereLoop, energy_on_the_step_leaves_everything_as_it_was)
 	EXPECT_EQ(numbers(one), numbers(other));
 }
 
-/// The pace of selections rises when the first one is made, which must not last longer for it: the balls meet after a hundred steps.
+/// At the first selection the loop increases the number of steps between selections; this must not apply to the selection that is
+/// already in use, because the balls touch after a hundred steps.
 TEST(SphereLoop, balls_that_come_to_each_other_meet_though_selections_become_rare)
 {
 	Scene<3> scene;
@@ -202,11 +205,12 @@ TEST(SphereLoop, balls_that_come_to_each_other_meet_though_selections_become_rar
 	PlainSpheres plain(scene);
 	loop.step(200);
 	for (int k = 0; k < 200; ++k) plain.step();
-	EXPECT_LT(loop.bodies()[0].velocity[0], 0.9 * speed);  // they have met
+	EXPECT_LT(loop.bodies()[0].velocity[0], 0.9 * speed);  // the balls have collided
 	EXPECT_NEAR(loop.bodies()[0].velocity[0], plain.bodies[0].b.velocity[0], 1e-9 * speed);
 }
 
-/// Layers of spheres that slide over each other without a touch: neighbours part slowly, however fast the top is against the ground.
+/// Layers of spheres that slide over each other without contact: displacements of neighbours differ little, however fast the top
+/// layer is.
 TEST(SphereLoop, a_shear_is_searched_much_less_often_than_pairs_are_selected)
 {
 	Scene<3> scene;

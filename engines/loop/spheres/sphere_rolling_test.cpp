@@ -14,8 +14,8 @@ using Law = laws::HertzHistory<double>;
 Vector3<Number> packed(const Vector3r& v) { return { Number(v.x()), Number(v.y()), Number(v.z()) }; }
 Vector3r first_of(const Vector3<Number>& v) { return { v.x.v[0], v.y.v[0], v.z.v[0] }; }
 
-/// One step of two spheres that roll over each other without slip: their centre line turns from `before` to `now` as leapfrog takes it
-/// there, and their surfaces move together.
+/// One step of two spheres that roll over each other without slip: leapfrog turns their centre line from `before` to `now`, and
+/// their surfaces have the same velocity.
 ContactForces<Number> roll(const Vector3r& before, const Vector3r& now, const Vector3r& spring, double dt)
 {
 	const Vector3r dv = (now - before) / dt, n = now.normalized(), surface = n.cross(dv);  // (n x dv) x n = dv - (dv.n) n
@@ -31,7 +31,8 @@ ContactForces<Number> roll(const Vector3r& before, const Vector3r& now, const Ve
 
 TEST(SphereRolling, the_tangential_force_stays_tangent_and_as_strong_about_two_axes)
 {
-	// Each step changes the length by less than the fourth power of its angle, 1e-16, and by round-off, which adds up like a random walk.
+	// Each step changes the length by less than the fourth power of its angle, 1e-16, and by round-off, which adds up as a random
+	// walk.
 	const double angle = 1e-4, dt = 1e-3;
 	Vector3r d(0, 0, 0.99), spring(3e-3, -2e-3, 0);
 	double first = 0;
@@ -52,7 +53,8 @@ TEST(SphereRolling, the_tangential_force_stays_tangent_and_as_strong_about_two_a
 
 TEST(SphereRolling, the_spring_turns_by_the_rotation_of_the_centre_line)
 {
-	// About an axis across the centre line a spring turns with it: after a quarter turn it points where the turn takes it.
+	// If the centre line turns about an axis across it, the spring turns with it: after a quarter turn it is the spring turned by
+	// that angle.
 	const Vector3r axis(0, 1, 0), start(2e-3, 1e-3, 0);
 	const int steps = 15708;
 	const double angle = pi / 2 / steps;

@@ -1,4 +1,4 @@
-/// The search finds every pair within the skin, once, in order: held to all pairs.
+/// The search finds every pair within the skin exactly once and in order, compared with a loop over all pairs.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -57,7 +57,7 @@ struct Crowd {
 		return body(a) != body(b) && !(state.body_fixed[body(a)] && state.body_fixed[body(b)]);
 	}
 
-	/// Those nearer than the skin, more or less.
+	/// All pairs nearer than the skin plus `more`.
 	Pairs all(double more) const
 	{
 		Pairs pairs;
