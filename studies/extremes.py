@@ -1,10 +1,10 @@
-"""Extremes: a scene at the limit of what is allowed must give the right answer, a guard that names the cause, or a known bound.
+"""Extremes: scenes at the limits of what is allowed give the right number, an error that names the cause, or a known bound.
 
 One run is one `case`: a scene of one to some hundred grains, or a small continuum drum, compared with a closed form. Cases are
 the largest stable step of every law in two and three dimensions, restitution 0.01 to 1, friction 0 to 10, spin ratios to 1000,
 speeds up to the overlap limit and beyond, radii 1:50, masses 1e6, springs 1e-12 to 1e24, a position 1e6 d from the origin, a
 bound pair for `pair_steps` steps, area fractions from 0.01 to jamming, a cell sheared for `strain` strains, and the drum's
-largest viscosity. The table in `graindrive/extremes/table.py` lists the cases: a name, a sentence, a function.
+largest viscosity. The table in `graindrive/extremes/table.py` lists the cases: name, description, function.
 
 The outcome is a word. `right`: the number agrees with the closed form within the tolerance. `guard`: a check stopped the run
 where it should, and said why. `bound`: the number agrees with a limit that users must know. `wrong`: none of these; such a run

@@ -1,4 +1,4 @@
-"""Crowds: area fractions from a gas to beyond jamming, and a cell that is sheared for a hundred strains."""
+"""Many grains: area fractions from a gas to beyond jamming, and a cell that is sheared to a strain of 100."""
 
 import math
 
@@ -27,7 +27,7 @@ def crowd(setting, dimensions, fraction, speed, **settings):
 
 
 def fractions(setting, *, dimensions):
-    """A crowd without friction and dissipation conserves energy, from a gas to a lattice that almost touches."""
+    """Grains without friction and dissipation conserve energy, from a gas to a lattice whose grains almost touch."""
     trials = dict(fraction=[], closure=[], searches=[])
     for fraction in FRACTIONS[dimensions]:
         loop = crowd(setting, dimensions, fraction, 1.0, trackEnergy=True)
@@ -36,13 +36,15 @@ def fractions(setting, *, dimensions):
         trials["closure"].append(loop.energy["closure"])
         trials["searches"].append(loop.searches)
     low, high = FRACTIONS[dimensions][0], FRACTIONS[dimensions][-1]
-    sentence = f"a crowd that loses nothing at Φ = {low:g} to {high:g}: residual of its energy ledger over the turnover, largest"
+    sentence = (
+        f"grains without dissipation, Φ = {low:g} to {high:g}: largest residual of the ledger over the energy exchanged"
+    )
     tolerance = 1e-5 if setting.single else 1e-11
-    return judged(RIGHT, max(trials["closure"]), 0.0, tolerance, "energy is kept", sentence, trials)
+    return judged(RIGHT, max(trials["closure"]), 0.0, tolerance, "conservation of energy", sentence, trials)
 
 
 def jamming(setting, *, dimensions):
-    """A lattice that is squeezed beyond touching: the fraction at which the overlap guard stops it."""
+    """The area or solid fraction at which the overlap guard stops a compressed lattice."""
     expected, guards = CLOSE[dimensions] / (1 - GUARDED) ** dimensions, set()
 
     def goes_on(ratio):
@@ -55,7 +57,7 @@ def jamming(setting, *, dimensions):
         return not said
 
     found = largest(goes_on, 0.9, 1.1, 1e-4)
-    sentence = f"Φ at which a squeezed lattice is stopped with 'overlap by …', over {expected:.4f}"
+    sentence = f"Φ at which the overlap guard stops a compressed lattice, over {expected:.4f}"
     source = f"{CLOSE[dimensions]:.4f}/(1 − 0.05)^D: overlap 0.1 R"
     return judged(GUARD, found if all(guards) else math.nan, 1.0, 1e-3, source, sentence)
 
@@ -67,7 +69,7 @@ SHEAR_STEP, SHEARED = 2e-4, 80  # sqrt(d/g); disks
 
 
 def shear(setting):
-    """Disks in a sheared periodic cell, for many strains: the ledger closes, including the work of the cell."""
+    """Disks in a sheared periodic cell, to a large strain: the energy ledger closes, including the work of the cell."""
     rate = INERTIAL * math.sqrt(PRESSURE)
     cell = shear_cell.ShearCell(
         grains=SHEARED,
@@ -94,9 +96,15 @@ def shear(setting):
         trials["closure"].append(abs(energy["residual"]) / energy["workOfCell"])
         trials["work"].append(energy["workOfCell"])
     sentence = (
-        f"{setting.strain:g} strains between sliding sides, I = 0.3: residual of the energy ledger over the cell's work"
+        f"sheared cell, I = 0.3, strain {setting.strain:g}: largest residual of the ledger over the work of the shear"
     )
     tolerance = 1e-3 if setting.single else 1e-9
     return judged(
-        RIGHT, max(trials["closure"]), 0.0, tolerance, "energy; the bound of the ledger's tests", sentence, trials
+        RIGHT,
+        max(trials["closure"]),
+        0.0,
+        tolerance,
+        "conservation of energy; tolerance of the ledger's tests",
+        sentence,
+        trials,
     )

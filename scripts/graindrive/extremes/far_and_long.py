@@ -18,7 +18,7 @@ GAP = 0.01014  # initial gap [d]: not a whole number of steps, or rounding would
 
 
 def far(setting, *, dimensions):
-    """An impact far from the origin and the same one near it: positions are rounded to eps X, and so is the overlap."""
+    """The same impact far from the origin and at it: positions have an error of eps X, and so has the overlap."""
     mass = mass_of(dimensions) / 2
     law, dt = spring(stiffness_for(LASTING, mass), 0.5), LASTING / STEPS
 
@@ -32,9 +32,9 @@ def far(setting, *, dimensions):
     depth = LASTING / math.pi
     tolerance = 10 * EPS * FAR / depth * math.sqrt(STEPS) + (1e-5 if setting.single else 0)
     said = ", ".join(f"{error:.1g} at {at:g} d" for at, error in zip(DISTANCES, errors))
-    sentence = f"an impact 1e6 d from the origin: its restitution less that at the origin; {said}"
+    sentence = f"an impact 1e6 d from the origin: its restitution minus that at the origin; at other distances {said}"
     trials = dict(distance=DISTANCES, error=errors)
-    source = "rounding of places: εX√n of the overlap, n steps"
+    source = "round-off of positions X: εX√n over the overlap, n steps"
     return judged(BOUND, found, 0.0, tolerance, source, sentence, trials)
 
 
@@ -46,9 +46,7 @@ def no_gravity(setting, *, dimensions):
     x, v, w = state_of(ids[0])
     errors = [*(x[:2] / (np.array(velocity) * steps * dt) - 1), *(v[:2] / velocity - 1), w / spin - 1, x[2], v[2]]
     worst = float(np.abs(errors).max())
-    sentence = (
-        f"free flight without gravity, {steps} steps: largest part by which place, velocity or spin are off x₀ + vt"
-    )
+    sentence = f"free flight without gravity, {steps} steps: largest relative error of position, velocity or spin"
     return judged(RIGHT, worst, 0.0, steps * EPS, "round-off of n additions, nε", sentence)
 
 
@@ -56,12 +54,12 @@ def no_gravity(setting, *, dimensions):
 
 SWING = 0.2  # of the overlap at rest
 REST = 0.01  # overlap at rest [d]
-STEPS_OF_A_SWING = 62.5  # about; the contact of 31 steps
+STEPS_OF_A_SWING = 62.5  # approximately; half an oscillation takes 31 steps
 PARTS = 50
 
 
 def bound_pair(setting, *, dimensions):
-    """A grain oscillates on a held one under its weight for many steps: energy, and position against leapfrog's own orbit."""
+    """A grain oscillates on a held one under its weight for many steps: its energy, and leapfrog's exact solution."""
     from yade import O
 
     mass, k_n = mass_of(dimensions), 1e4
@@ -69,7 +67,7 @@ def bound_pair(setting, *, dimensions):
     dt = 2 * math.pi / omega / STEPS_OF_A_SWING
     weight = REST * k_n / mass  # g
     balance, amplitude = 2 * R - REST, SWING * REST
-    turn = 2 * math.asin(omega * dt / 2)  # of leapfrog's orbit, in a step
+    turn = 2 * math.asin(omega * dt / 2)  # phase of leapfrog's solution per step
     # y_n = A cos(n turn) belongs to v_(-1/2) = (y_0 - y_(-1))/dt = A (1 - cos turn)/dt.
     start = (0, amplitude * (1 - math.cos(turn)) / dt)
     ids = place(
@@ -100,14 +98,20 @@ def bound_pair(setting, *, dimensions):
     apart = max(trials["place"], key=abs)
     n = setting.steps
     sentence = (
-        f"{n:.3g} steps of a pair bound by weight: energy of the swing less that at the start, over it, furthest from 0; its"
-        f" place is at most {abs(apart):.1g} of the swing from leapfrog's own orbit"
+        f"a grain oscillates on another under its weight, {n:.3g} steps: largest relative change of the oscillation's energy;"
+        f" its position differs from leapfrog's exact solution by {abs(apart):.1g} of the amplitude at most"
     )
-    # y is known to eps of d, 1e-16/2e-3 of the swing; the orbit's plane wanders by its root, and drifts by n times less.
+    # y has an error of eps d, 1e-16/2e-3 of the amplitude. It adds up as sqrt(n); its systematic part is 1000 times smaller.
     rounding = EPS / amplitude if not setting.single else 6e-8 / REST / SWING
     tolerance = 10 * rounding * math.sqrt(n) + (n * rounding * 1e-3 if setting.single else 0)
     return judged(
-        RIGHT, worst, 0.0, tolerance, "leapfrog keeps y² + y₋² − 2 cos(ωdt) y y₋; rounding as √n", sentence, trials
+        RIGHT,
+        worst,
+        0.0,
+        tolerance,
+        "leapfrog conserves y² + y₋² − 2 cos(ωdt) y y₋; round-off grows as √n",
+        sentence,
+        trials,
     )
 
 
@@ -129,13 +133,15 @@ def oscillation(setting):
             trials["period"].append(period)
             trials["error"].append(state_of(0)[0][0] / amplitude - math.sin(angle))
     worst = max(trials["error"], key=abs)
-    sentence = "amplitudes 1e-6 to 1e6 d, periods 2.5 to 1e8 steps: place after 5000 steps less A sin(2πt/T), over A"
-    tolerance = 8 * EPS * 2 * math.pi * steps / min(PERIODS)  # the angle is rounded as a number of its size
+    sentence = (
+        "amplitudes 1e-6 to 1e6 d, periods 2.5 to 1e8 steps: position after 5000 steps minus A sin(2πt/T), over A"
+    )
+    tolerance = 8 * EPS * 2 * math.pi * steps / min(PERIODS)  # the angle's round-off is relative to its size
     return judged(RIGHT, worst, 0.0, tolerance, "x = A sin(2πt/T)", sentence, trials)
 
 
 def wiggle_ends(_setting):
-    """The wiggle study at periods that its step or its run cannot show: refused by name."""
+    """The wiggle study refuses periods that are too short for its time step or too long for its run."""
     wiggle = study.loaded(study.house()["wiggle"])
     usual = wiggle.usual("smoke").dict()
     asked = (
@@ -144,5 +150,5 @@ def wiggle_ends(_setting):
     )
     said = [said_by(lambda keys=keys: wiggle.check(wiggle.parameters(**{**usual, **keys}))) for keys, _ in asked]
     found = sum(words in told for told, (_, words) in zip(said, asked))
-    sentence = "wiggle, T = 1e-4 and T = 1e6: refusals that name the period and its bound"
-    return judged(GUARD, found, len(asked), 0.5, "40 samples of a period, a period in 40 runs", sentence)
+    sentence = "wiggle, T = 1e-4 and T = 1e6: number of refusals that name the period and its bound"
+    return judged(GUARD, found, len(asked), 0.5, "at least 40 samples in a period, at most 40 run lengths", sentence)

@@ -13,23 +13,23 @@ from ..scenes import scene
 from ..base.errors import EngineError, UsageError
 
 R = 0.5  # radius of a usual grain [d]
-OWN = ("cundallStrack", "hertzMindlin")  # laws of YADE's own, for disks
+OWN = ("cundallStrack", "hertzMindlin")  # YADE's own laws, for disks
 CLOSE = {
     2: math.pi / (2 * math.sqrt(3)),
     3: math.pi / (3 * math.sqrt(2)),
-}  # area fraction of a triangular, volume of a cubic lattice
+}  # area fraction of a triangular, solid fraction of a face-centred cubic lattice
 
 
 @dataclass(frozen=True)
 class Law:
-    """A law by its name in GrainLoop, what it is given, and the friction; a material as `scene.yade_loop` takes it."""
+    """A law by its name in GrainLoop, its constants, and the friction; a material for `scene.yade_loop`."""
 
     LAW: str
     numbers: dict
     friction: float = 0.0
 
     def given(self):
-        """Return what the law is given, under the names of GrainLoop and of the Law2_ functor."""
+        """Return the law's constants, under the names of GrainLoop and of the Law2_ functor."""
         return dict(self.numbers)
 
     def terms(self, overlap, radius=R / 2, mass=1.0):
@@ -63,7 +63,7 @@ def spring(k_n=1e6, restitution=1.0, friction=0.0, ratio=1 / 3):
 
 
 def duration(law, mass, overlap=None):
-    """Return pi sqrt(m/k): the linear contact's duration, of another law with its stiffness at an overlap."""
+    """Return pi sqrt(m/k): the duration of a linear contact; for another law k is its stiffness at an overlap."""
     return math.pi * math.sqrt(mass / law.terms(overlap or 1e-3, mass=mass)["stiffness"])
 
 
@@ -87,7 +87,7 @@ def body_of(grain, dimensions):
 def place(grains, law, setting, dt, dimensions=2, *, gravity=0.0, before=(), box=None, **settings):
     """Put grains and the loop of `setting` into YADE; return their ids. Errors come from GrainLoop's own checks.
 
-    `before` are drives, which stand before the integrator; `box` is the size of a periodic cell; `settings` go to GrainLoop.
+    `before` are drives, which precede the integrator; `box` is the size of a periodic cell; `settings` go to GrainLoop.
     """
     from yade import O
     from yade.wrapper import FrictMat
@@ -158,7 +158,7 @@ def state_of(ident):
 
 
 def lattice(dimensions, fraction):
-    """Return places (n, 3) and box of a close-packed lattice that is spread to an area or solid fraction."""
+    """Return positions (n, 3) and box of a close-packed lattice, scaled to an area or solid fraction."""
     spacing = (CLOSE[dimensions] / fraction) ** (1 / dimensions)
     if dimensions == 2:
         column, row = (axis.ravel() for axis in np.meshgrid(np.arange(8), np.arange(8)))

@@ -12,8 +12,8 @@ from .outcome import BOUND, GUARD, RIGHT, judged
 
 VISCOSITIES = (1e2, 1e3, 1e4, 1e5, 1e6)  # m sqrt(g/d)
 KEYS = dict(model="continuum", drum_diameter=40, froude=0.02, cells=24, continuum_dt=0.05)
-SPUN_UP = 30.0  # sqrt(d/g): walls drag the fluid along in R^2 rho/(5.8 eta), 0.7 at the least viscosity
-DRAGGED = 0.05  # R^2/nu: when the layer of gas that the wall drags along is as thick as some cells
+SPUN_UP = 30.0  # sqrt(d/g): the fluid follows the walls within R^2 rho/(5.8 eta), 0.7 at the least viscosity
+DRAGGED = 0.05  # R^2/nu: after this time the gas has a boundary layer of some cells
 HALF_A_LAYER = 60.0  # sqrt(d/g), a turn of 108 degrees
 
 
@@ -44,7 +44,7 @@ def off_rigid_rotation(p, flow):
 
 
 def full(_setting):
-    """A completely full drum finally turns like a rigid body, for every largest viscosity."""
+    """The fluid in a completely full drum finally rotates like a rigid body, for every largest viscosity."""
     trials = dict(viscosity=[], error=[])
     for viscosity in VISCOSITIES:
         p, flow = flow_of(viscosity, 1.0)
@@ -53,7 +53,7 @@ def full(_setting):
         trials["error"].append(off_rigid_rotation(p, flow))
     worst = max(trials["error"])
     sentence = (
-        "full drum, η_max 1e2 to 1e6 m√(g/d): largest velocity off rigid rotation over that of the wall, 24 cells"
+        "full drum, η_max 1e2 to 1e6 m√(g/d), 24 cells: largest deviation from rigid rotation over the wall's velocity"
     )
     return judged(BOUND, worst, 0.0, 1e-3, "v = Ω × r", sentence, trials)
 
@@ -85,10 +85,10 @@ def gas(_setting):
         trials["error"].append(float(error))
     worst = max(trials["error"])
     sentence = (
-        "drum without a bed, η_max 1e2 to 1e6 m√(g/d): velocity of the gas against its spin-up, largest error over the wall's,"
-        " 24 cells"
+        "drum with gas only, η_max 1e2 to 1e6 m√(g/d), 24 cells: velocity during the spin-up, largest error over the wall's"
+        " velocity"
     )
-    # The wall's transition is two cells of twelve thick, and the wall acts from within it.
+    # The transition between fluid and wall is two cells thick, of twelve along the radius, and the wall acts from within it.
     return judged(BOUND, worst, 0.0, 0.2, "spin-up of a fluid in a cylinder, by Bessel functions", sentence, trials)
 
 
@@ -103,14 +103,12 @@ def area(_setting):
         trials["error"].append(flow.area / before - 1)
         trials["fastest"].append(float(np.hypot(*np.moveaxis(flow.velocity, -1, 0)).max()))
     worst = max(trials["error"], key=abs)
-    sentence = (
-        "half full drum, η_max 1e2 to 1e6 m√(g/d), a turn of 108°: area of the bed over that at the start, less 1"
-    )
+    sentence = "half full drum, η_max 1e2 to 1e6 m√(g/d), a turn of 108°: largest relative change of the bed's area"
     return judged(RIGHT, worst, 0.0, 1e-3, "∇·v = 0", sentence, trials)
 
 
 def fillings(_setting):
-    """A drum that is almost full, or almost empty, is refused by name."""
+    """The study refuses a drum that is almost full or almost empty, and a step in which the wall crosses cells."""
     made = drum()
     asked = (
         (dict(filling=0.95), "gives the continuum no free surface"),
@@ -119,5 +117,7 @@ def fillings(_setting):
     )
     said = [said_by(lambda keys=keys: made.check(made.parameters(**{**KEYS, **keys}))) for keys, _ in asked]
     found = sum(words in told for told, (_, words) in zip(said, asked))
-    sentence = "drum, filling 0.95 and 0.02, and a step in which the wall crosses cells: refusals that name the key and its bound"
+    sentence = (
+        "drum, filling 0.95 and 0.02, and a step in which the wall crosses cells: number of refusals that name the key"
+    )
     return judged(GUARD, found, len(asked), 0.5, "a bed needs a surface and six cells", sentence)

@@ -15,7 +15,7 @@ SINGLE = (
 
 
 def meeting(speed, *, apart=1e-5, weights=(1, 1), radii=(R, R), spins=(0, 0), at=0.0):
-    """Return two grains that meet along x with this speed, the second at rest, `apart` before they touch."""
+    """Return two grains: the first moves along x with this speed towards the second, at rest; their gap is `apart`."""
     distance = radii[0] + radii[1] + apart
     first = Grain((at, at), (speed, 0), radii[0], weights[0], spins[0])
     return [first, Grain((at + distance, at), (0, 0), radii[1], weights[1], spins[1])]
@@ -50,23 +50,21 @@ def restitution(setting, *, dimensions):
                 depth = largest_depth(law, mass, 1.0)
                 contact = 2.94 * depth
             apart, dt = 0.1 * contact, contact / (4 * STEPS)
-            # A strongly damped contact takes up to 1/w with w = omega sqrt(1 - b^2), six times as long at e = 0.01.
+            # Damping makes contacts longer, by 1/sqrt(1 - b^2) for the linear law, and up to six times at e = 0.01.
             (_, v1, _), (_, v2, _) = met(meeting(1.0, apart=apart), law, setting, dimensions, dt, 16 * STEPS)
             trials["law"].append(name)
             trials["given"].append(e)
             trials["error"].append(v2[0] - v1[0] - e)
     worst = max(trials["error"], key=abs)
-    sentence = (
-        f"restitution {RESTITUTIONS[0]} to 1, linear and Hertz contacts of {4 * STEPS} steps: error furthest from 0"
-    )
-    # The dashpot uses the velocity half a step earlier: omega dt/2 times at most b (1 - b^2)... below 2 omega dt.
+    sentence = f"restitution {RESTITUTIONS[0]} to 1, linear and Hertz contacts of {4 * STEPS} steps: largest error"
+    # The dashpot uses the velocity half a step earlier, which changes e by less than 2 omega dt.
     tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)
     source = "e = exp(−π b/√(1 − b²)); Antypov, Elliott 2011 for Hertz"
     return judged(RIGHT, worst, 0.0, tolerance, source, sentence, trials)
 
 
 def largest_depth(law, mass, speed):
-    """Return the largest overlap of an undamped impact: where the law's energy is that of the motion."""
+    """Return the largest overlap of an undamped impact: there the elastic energy equals the kinetic energy before."""
     low, high = 1e-12, 2 * R
     while high / low > 1 + 1e-12:
         middle = math.sqrt(low * high)
@@ -77,7 +75,7 @@ def largest_depth(law, mass, speed):
 # Friction -------------------------------------------------------------------------------------------------------------
 
 FRICTIONS = (0.0, 0.01, 0.05, 0.1, 0.15, 0.5, 1.0, 3.0, 10.0)
-SURFACE = 1.2  # velocity of the surfaces against each other, over that along the normal
+SURFACE = 1.2  # tangential over normal relative velocity at the contact
 
 
 def surface_velocity(states):
@@ -100,10 +98,8 @@ def friction(setting, *, dimensions):
         trials["expected"].append(-SURFACE if sticks else SURFACE - 2 * inverse * mu)
     errors = np.subtract(trials["found"], trials["expected"])
     worst = float(errors[np.abs(errors).argmax()])
-    sentence = (
-        "μ 0 to 10, surfaces meet at 1.2 of the normal velocity: error of their velocity afterwards, furthest from 0"
-    )
-    tolerance = 5 * CONTACT + (SINGLE if setting.single else 0)  # what the contact turns, and what it sees of the step
+    sentence = "μ 0 to 10, tangential velocity 1.2 times the normal one: largest error of the former after the impact"
+    tolerance = 5 * CONTACT + (SINGLE if setting.single else 0)  # rotation of the contact's normal, and the time step
     source = "v_t − 2μ(m/m_t)v_n while slipping, −v_t where it sticks (equal frequencies)"
     return judged(RIGHT, worst, 0.0, tolerance, source, sentence, trials)
 
@@ -122,9 +118,7 @@ def spin(setting, *, dimensions):
         trials["ratio"].append(ratio)
         trials["friction"].append(v2[1] / v2[0])
     worst = max(trials["friction"], key=lambda f: abs(f / mu - 1)) / mu
-    sentence = (
-        "spin ratio ωR/v 10 to 1000, μ = 0.5: impulse along the surface over μ times the normal one, furthest from 1"
-    )
+    sentence = "spin ratio ωR/v 10 to 1000, μ = 0.5: tangential impulse over μ times the normal one, furthest from 1"
     return judged(
         RIGHT, worst, 1.0, 5 * CONTACT + (SINGLE if setting.single else 0), "Coulomb: J_t = μ J_n", sentence, trials
     )
@@ -143,10 +137,10 @@ def angular_momentum(setting, *, dimensions):
     expected = mu * k_n * depth**2 * contact / 2
     found = (inertia * ratio / R - after) / expected
     sentence = (
-        f"overlap {depth / R:.2g} R, slipping: angular momentum that the pair loses over μ∫δ F_n dt; it is {depth / (2 * R):.2g}"
-        f" of what the contact turns"
+        f"slipping contact, overlap {depth / R:.2g} R: angular momentum that the pair loses over μ∫δ F_n dt; the loss is"
+        f" {depth / (2 * R):.2g} of the angular impulse on both grains"
     )
-    # The normal turns by some v_t contact/d in the contact, which changes both impulses to first order.
+    # The normal turns by about v_t contact/d during the contact, which changes both impulses to first order.
     return judged(BOUND, found, 1.0, 0.1, "torque R n×F_t on both grains (engines/README.md)", sentence)
 
 
@@ -171,7 +165,7 @@ def speed_limit(setting, *, dimensions):
     for law in SPEED_LAWS:
         mass = mass_of(dimensions)
         expected = math.sqrt(2 * law.terms(LIMIT * R, mass=mass)["energy"] / mass)
-        dt = duration(law, mass, LIMIT * R / 2) / 4000  # the guard looks every 100 steps
+        dt = duration(law, mass, LIMIT * R / 2) / 4000  # the guard checks every 100 steps
 
         def goes_on(ratio, law=law, dt=dt, expected=expected):
             driven_meeting(law, setting, dimensions, ratio * expected, dt, 0.1 * LIMIT * R)
@@ -182,7 +176,7 @@ def speed_limit(setting, *, dimensions):
         trials["law"].append(law.LAW)
         trials["ratio"].append(largest(goes_on, 0.5, 2.0, 1e-3))
     worst = max(trials["ratio"], key=lambda r: abs(r - 1))
-    sentence = "speed of a driven grain at which GrainLoop says 'overlap by …', over that at which ½mV² = U(0.1 R)"
+    sentence = "speed of a driven grain at which the overlap guard stops the run, over the speed V with ½mV² = U(0.1 R)"
     return judged(GUARD, worst if all(guards) else math.nan, 1.0, 0.01, "energy of the contact", sentence, trials)
 
 
@@ -196,17 +190,17 @@ def passing(setting, *, dimensions):
     def passes_unseen(ratio):
         speed = ratio * limit
         first, second = driven_meeting(law, setting, dimensions, speed, dt, 5 * speed * dt)
-        if said_by(lambda: advance(90)):  # without a search the guard looks at steps 0 and 100
+        if said_by(lambda: advance(90)):  # without a search the guard checks at steps 0 and 100
             return False
         return state_of(second)[0][0] < state_of(first)[0][0]
 
     ratios = [2.0 * 1.5**k for k in range(11)]  # to 115; from 20 on the energy is that of an overlap of 2 R
     unseen = sum(map(passes_unseen, ratios))
     sentence = (
-        "a contact of 50 steps between two looks of the guard at every 100 steps: of 11 speeds of 2 to 115 overlap limits, how"
-        " many let a grain pass through another and nothing is said; a search looks, too"
+        "contacts of 50 steps between two checks of the guard, 100 steps apart, at 11 speeds of 2 to 115 times the overlap"
+        " limit's: number of speeds at which a grain passes through another without an error (the guard also checks at searches)"
     )
-    return judged(GUARD, float(unseen), 0.0, 0.5, "none", sentence)
+    return judged(GUARD, float(unseen), 0.0, 0.5, "no grain may pass without an error", sentence)
 
 
 # Ratios ---------------------------------------------------------------------------------------------------------------
@@ -236,14 +230,14 @@ def unequal(setting, dimensions, ratios, of_radius):
 
 
 def radius_ratio(setting, *, dimensions):
-    """Radius ratio 1:50 either way."""
+    """Impacts on a grain of 50 times the radius and of a fiftieth of it."""
     worst, trials = unequal(setting, dimensions, (1 / 50, 1 / 7, 7.0, 50.0), True)
     sentence = "radius ratio 1:50 to 50:1, e = 0.5: largest error of a velocity after the impact"
     return ratios_judged(setting, worst, trials, sentence)
 
 
 def mass_ratio(setting, *, dimensions):
-    """Mass ratio 1e6 either way."""
+    """Impacts on a grain of 1e6 times the mass and of a millionth of it."""
     worst, trials = unequal(setting, dimensions, (1e-6, 1e-3, 1e3, 1e6), False)
     sentence = "mass ratio 1e-6 to 1e6, e = 0.5: largest error of a velocity after the impact"
     return ratios_judged(setting, worst, trials, sentence)
@@ -251,8 +245,10 @@ def mass_ratio(setting, *, dimensions):
 
 def ratios_judged(setting, worst, trials, sentence):
     """Judge errors after impacts of unequal grains."""
-    tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)  # as of a restitution
-    return judged(RIGHT, worst, 0.0, tolerance, "momentum, and e between the velocities", sentence, trials)
+    tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)  # as for the restitution
+    return judged(
+        RIGHT, worst, 0.0, tolerance, "conservation of momentum, and e of the relative velocity", sentence, trials
+    )
 
 
 RING = 60  # small grains
@@ -274,10 +270,10 @@ def ring(setting):
     ]
     worst = max(radial, key=lambda v: abs(v - 1))
     sentence = (
-        f"{RING} disks meet one of fifty times their radius at once: their speed back over that before, furthest from 1"
+        f"{RING} disks hit one of fifty times their radius at once: their speed after over that before, furthest from 1"
     )
     tolerance = 1e-3 + (SINGLE if setting.single else 0)
-    return judged(RIGHT, worst, 1.0, tolerance, "symmetry: the large one stays", sentence, dict(speed=radial))
+    return judged(RIGHT, worst, 1.0, tolerance, "symmetry: the large disk stays at rest", sentence, dict(speed=radial))
 
 
 # Stiffness ------------------------------------------------------------------------------------------------------------
@@ -291,14 +287,14 @@ def stiffness(setting, *, dimensions):
     for k_n in STIFFNESSES:
         law = spring(k_n, e)
         contact = duration(law, mass)
-        speed, dt = 0.01 * math.pi / contact, contact / (4 * STEPS)  # 0.01 d deep
+        speed, dt = 0.01 * math.pi / contact, contact / (4 * STEPS)  # overlap 0.01 d
         pair = meeting(speed, apart=0.1 * speed * contact)
         (_, v1, _), (_, v2, _) = met(pair, law, setting, dimensions, dt, 8 * STEPS)
         trials["stiffness"].append(k_n)
         trials["error"].append((v2[0] - v1[0]) / speed - e)
     worst = max(trials["error"], key=abs)
     sentence = (
-        f"springs of {STIFFNESSES[0]:g} to {STIFFNESSES[-1]:g}, overlap 0.01 d: restitution less 0.5, furthest from 0"
+        f"springs of {STIFFNESSES[0]:g} to {STIFFNESSES[-1]:g}, overlap 0.01 d: largest error of the restitution 0.5"
     )
     tolerance = 2 * math.pi / (4 * STEPS) + (SINGLE if setting.single else 0)
     return judged(RIGHT, worst, 0.0, tolerance, "units: e does not depend on k", sentence, trials)
@@ -318,7 +314,5 @@ def softest(setting, *, dimensions):
         return bool(said) or not ids
 
     found = largest(stopped, 0.5, 2.0, 1e-3)
-    sentence = (
-        "softest spring that bears a speed of 1, below which GrainLoop says 'overlap by …', over m_eff v²/(0.1 R)²"
-    )
+    sentence = "softest spring with which an impact at speed 1 passes the overlap guard, over m_eff v²/(0.1 R)²"
     return judged(GUARD, found if all(guards) else math.nan, 1.0, 0.01, "½mv² = ½k(0.1 R)²", sentence)

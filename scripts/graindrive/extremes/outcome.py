@@ -20,7 +20,7 @@ class Setting:
 
     @property
     def single(self):
-        """True where contacts are computed in single precision."""
+        """True if contacts are computed in single precision."""
         return self.precision == "single"
 
 
@@ -62,7 +62,7 @@ class Case:
 def judged(word, measured, expected, tolerance, source, sentence, trials=None):
     """Return the `Outcome` with this word if the number is as expected, else with `wrong`."""
     holds = math.isfinite(measured) and abs(measured - expected) <= tolerance
-    measured = measured if math.isfinite(measured) else 1e30  # a number that contradicts any claim
+    measured = measured if math.isfinite(measured) else 1e30  # finite, but outside of every tolerance
     return Outcome(word if holds else WRONG, measured, expected, tolerance, source, sentence, trials or {})
 
 

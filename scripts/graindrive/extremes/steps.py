@@ -10,12 +10,12 @@ from .few_grains import CLOSE, Grain, Law, R, advance, duration, lattice, mass_o
 from .outcome import BOUND, GUARD, RIGHT, judged, largest
 
 GRIP = 1e9  # a friction coefficient that no contact here reaches
-SHALLOW, DEEP = 1e-3, 0.1  # overlaps [R]: of the observed pair, and of GrainLoop's own check
-FAINT = 1e-8  # overlap of a pair that slides [R]: with more it would tip over during the observation
-BLOCKS, BLOCK, ODD = 8, 500, 7  # blocks and steps of a block; then as many more checks as steps between them
+SHALLOW, DEEP = 1e-3, 0.1  # overlaps [R]: of the observed pair, and in GrainLoop's check
+FAINT = 1e-8  # overlap of a sliding pair [R]: with more, the pair would turn during the observation
+BLOCKS, BLOCK, ODD = 8, 500, 7  # number of blocks, steps of a block; then ODD checks, ODD steps apart
 START, GROWN = 1e-7, 1e3  # first deviation over the overlap, and its growth that counts as unstable
 RESOLUTION = 5e-4  # of the bisection
-# A strongly damped motion grows by a part 1 + dt/dt_crit - 1 a step or more: 4000 steps see 2 parts in a thousand.
+# Beyond the limit a strongly damped motion grows by dt/dt_crit - 1 a step or more: 4000 steps resolve 2 parts in 1000.
 TOLERANCE = 5e-3
 LAWS = {
     "spring": Law("springDashpot", dict(normalStiffness=1e6, tangentialStiffness=1e6, restitution=0.5)),
@@ -98,7 +98,7 @@ def guarded_step(law, setting, dimensions, sliding):
 
 
 def stable_step(setting, *, law, dimensions):
-    """The largest step of a pair over theory: on YADE's loop by the motion, on GrainLoop by its check, and stable just below."""
+    """The largest step of a pair over theory: on YADE's loop from the motion, on GrainLoop from its check."""
     law, trials = LAWS[law], dict(direction=[], overlap=[], ratio=[], share=[])
     stable = True
     for sliding in (False, True):
@@ -119,11 +119,11 @@ def stable_step(setting, *, law, dimensions):
     worst = max(trials["ratio"], key=lambda r: abs(r - 1) if math.isfinite(r) else math.inf)
     shares = " and ".join(f"{share:.3f}" for share in trials["share"])
     how = (
-        "the motion grows beyond"
+        "beyond it the motion grows"
         if setting.loop == "yade"
-        else "GrainLoop takes no longer one, and just below it a pair is at rest;"
+        else "GrainLoop refuses a larger one, and just below it a pair stays at rest"
     )
-    sentence = f"largest step over theory: {how} {shares} of π√(m/k), against the normal and sliding"
+    sentence = f"largest step over theory, {how}; {shares} of π√(m/k) for normal and sliding motion"
     word = RIGHT if setting.loop == "yade" else GUARD
     return judged(word, worst if stable else math.nan, 1.0, TOLERANCE, SOURCE, sentence, trials)
 
@@ -146,8 +146,8 @@ def deep_step(setting, *, dimensions):
     found = largest(taken, 0.5, 2.0, RESOLUTION)
     stable = stays(law, setting, dimensions, 0.99 * found * expected, ALLOWED, sliding=False)
     sentence = (
-        f"Hertz's law with largestOverlap = 0.3: step that GrainLoop takes over the critical one of a pair pressed so deep, which"
-        f" {'stays at rest' if stable else 'then swings up'}"
+        f"Hertz's law, largestOverlap = 0.3: largest step that GrainLoop accepts over the critical one at that overlap; the pair"
+        f" {'stays at rest' if stable else 'becomes unstable'}"
     )
     return judged(GUARD, found if stable else math.nan, 1.0, TOLERANCE, SOURCE, sentence)
 
@@ -157,13 +157,13 @@ def deep_step(setting, *, dimensions):
 SQUEEZED = 1e-3  # overlap of its grains [d]
 WATCHED = 3000  # steps
 CONTACTS = {2: 6, 3: 12}  # of a grain
-EDGE = {2: 6, 3: 8}  # omega^2 over k/m of its fastest mode, at the edge of its zone
+EDGE = {2: 6, 3: 8}  # omega^2 over k/m of its fastest mode, at the edge of the Brillouin zone
 
 
 def crystal(setting, dimensions, dt, law):
     """Put a slightly compressed close-packed crystal into YADE, at rest except for noise; return the ids and the noise."""
     at, box = lattice(dimensions, CLOSE[dimensions] / (1 - SQUEEZED) ** dimensions)
-    noise = 1e-3 if setting.single else 1e-9  # above what rounding of forces does
+    noise = 1e-3 if setting.single else 1e-9  # larger than the effect of the forces' round-off
     speeds = np.zeros((len(at), 3))
     speeds[:, :dimensions] = np.random.default_rng(1).normal(0, noise, (len(at), dimensions))
     grains = [Grain(tuple(x), tuple(v)) for x, v in zip(at, speeds)]
@@ -204,15 +204,15 @@ def stable_crystal(setting, *, dimensions):
         else said or f"speeds of {fastest(advance_ids):.2g} d/s"
     )
     sentence = (
-        f"a crystal of {CONTACTS[dimensions]} contacts is stable up to this part of the pair's critical step, of which GrainLoop"
-        f" allows all; 4 % beyond, with e = 0.9: {told}"
+        f"crystal, {CONTACTS[dimensions]} contacts a grain, no friction: largest step over a pair's critical one (GrainLoop"
+        f" accepts the latter); 4 % beyond it, with e = 0.9: {told}"
     )
-    source = f"ω² = {EDGE[dimensions]} k/m at the edge of its zone, 2 k/m of a pair"
+    source = f"ω² = {EDGE[dimensions]} k/m at the edge of the Brillouin zone, 2 k/m for a pair"
     return judged(BOUND, found, expected, 0.01, source, sentence)
 
 
 def frictional_frequency(k_n, k_t, mass):
-    """Return the largest frequency of a triangular crystal whose contacts stick, over the waves that the periodic cell holds."""
+    """Return the largest frequency of a triangular crystal with sticking contacts, among the waves that fit the periodic cell."""
     fastest_of = 0.0
     sides = [np.array([math.cos(a), math.sin(a)]) for a in (0, math.pi / 3, 2 * math.pi / 3)]
     weights = 1 / np.sqrt([mass, mass, mass * R**2 / 2])
@@ -230,13 +230,13 @@ def frictional_frequency(k_n, k_t, mass):
 
 
 def stable_crystal_that_sticks(setting):
-    """The same of disks that stick to each other and may turn, against the fastest of the waves that the cell holds."""
+    """The same for disks with sticking contacts that may rotate, compared with the fastest wave that fits the cell."""
     law = spring(1e6, 1.0, GRIP, 1.0)
     pair, safe = theory(law, 2, SHALLOW, True), 1 / math.sqrt(CONTACTS[2])
     found = crystal_step(setting, 2, law, pair)
     expected = 2 / frictional_frequency(1e6, 1e6, mass_of(2)) / pair
     sentence = (
-        f"a crystal of six contacts that stick is stable up to this part of the pair's critical step; no packing of six"
-        f" contacts a grain is below 1/√6 = {safe:.3f}"
+        f"crystal with six sticking contacts a grain: largest stable step over the pair's critical step; for any packing with"
+        f" six contacts a grain this ratio is at least 1/√6 = {safe:.3f}"
     )
-    return judged(BOUND, found, expected, 0.01, "eigenvalues of the crystal's waves, with rotation", sentence)
+    return judged(BOUND, found, expected, 0.01, "largest eigenvalue of the crystal's waves, with rotation", sentence)

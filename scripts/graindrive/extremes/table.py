@@ -6,7 +6,7 @@ from . import crowds, far_and_long, fluids, impacts, steps
 from .outcome import Case
 
 GRAIN, DOUBLE = ("grain",), ("double",)
-IN_PLANE = ("cundall_strack", "hertz_mindlin")  # laws for disks alone
+IN_PLANE = ("cundall_strack", "hertz_mindlin")  # laws for disks only
 
 
 def in_both(name, meaning, function, **limits):
@@ -30,39 +30,43 @@ CASES = {
     **in_both("step_deep", "stable step of deep contacts", steps.deep_step, loops=GRAIN, precisions=DOUBLE),
     **in_both("step_crystal", "largest stable step of a crystal", steps.stable_crystal, loops=GRAIN),
     "step_sticking_crystal_2d": Case(
-        "largest stable step of a crystal that sticks", steps.stable_crystal_that_sticks, GRAIN
+        "largest stable step of a crystal with sticking contacts", steps.stable_crystal_that_sticks, GRAIN
     ),
     **in_both("restitution", "restitution 0.01 to 1", impacts.restitution),
     **in_both("friction", "friction coefficient 0 to 10", impacts.friction),
     **in_both("spin", "spin ratio up to 1000", impacts.spin),
-    **in_both("angular_momentum", "angular momentum of a deep contact that slips", impacts.angular_momentum),
+    **in_both("angular_momentum", "angular momentum of a deep slipping contact", impacts.angular_momentum),
     **in_both("speed", "drive speed up to the overlap limit", impacts.speed_limit, loops=GRAIN),
-    **in_both("passing", "drive speed at which grains pass through each other unseen", impacts.passing, loops=GRAIN),
+    **in_both(
+        "passing", "drive speed at which grains pass through each other without an error", impacts.passing, loops=GRAIN
+    ),
     **in_both("radius_ratio", "radius ratio 1:50", impacts.radius_ratio),
     **in_both("mass_ratio", "mass ratio 1e6", impacts.mass_ratio),
-    "ring_2d": Case("sixty small disks meet a large one at once", impacts.ring),
-    **in_both("stiffness", "stiffest and softest springs in other units", impacts.stiffness),
+    "ring_2d": Case("sixty small disks hit a large one at once", impacts.ring),
+    **in_both("stiffness", "stiffest and softest springs", impacts.stiffness),
     **in_both("softest", "grains too soft for their speed", impacts.softest, loops=GRAIN),
     **in_both("far", "an impact 1e6 d from the origin", far_and_long.far),
     **in_both("no_gravity", "free flight without gravity", far_and_long.no_gravity),
-    **in_both("bound_pair", "very many steps of one bound pair", far_and_long.bound_pair),
+    **in_both("bound_pair", "very many steps of a grain oscillating on another", far_and_long.bound_pair),
     "oscillation": Case("amplitude and period of the wiggle's drive", far_and_long.oscillation, precisions=DOUBLE),
-    "wiggle_ends": Case("periods that the wiggle study cannot show", far_and_long.wiggle_ends, GRAIN, DOUBLE),
-    **in_both("fraction", "from a gas to a lattice that touches", crowds.fractions, loops=GRAIN),
-    **in_both("jamming", "beyond jamming", crowds.jamming, loops=GRAIN),
-    "shear_strains": Case("a hundred strains between sliding sides", crowds.shear, GRAIN),
+    "wiggle_ends": Case(
+        "periods that are too short or too long for the wiggle study", far_and_long.wiggle_ends, GRAIN, DOUBLE
+    ),
+    **in_both("fraction", "energy from a gas to a dense lattice", crowds.fractions, loops=GRAIN),
+    **in_both("jamming", "a lattice compressed beyond jamming", crowds.jamming, loops=GRAIN),
+    "shear_strains": Case("energy of a cell sheared to a strain of 100", crowds.shear, GRAIN),
     "drum_full": Case(
-        "a full drum of the continuum",
+        "rigid rotation in a full continuum drum",
         fluids.full,
         GRAIN,
         DOUBLE,
     ),
     "drum_empty": Case(
-        "a drum of the continuum without a bed",
+        "spin-up in a continuum drum with gas only",
         fluids.gas,
         GRAIN,
         DOUBLE,
     ),
-    "drum_area": Case("a half full drum of the continuum", fluids.area, GRAIN, DOUBLE),
-    "drum_fillings": Case("drums that the continuum cannot fill", fluids.fillings, GRAIN, DOUBLE),
+    "drum_area": Case("area of the bed in a half full continuum drum", fluids.area, GRAIN, DOUBLE),
+    "drum_fillings": Case("fillings that the continuum drum refuses", fluids.fillings, GRAIN, DOUBLE),
 }
