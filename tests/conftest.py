@@ -1,4 +1,4 @@
-"""What all tests here share."""
+"""Fixtures and settings that all tests share."""
 
 import os
 import signal
@@ -6,13 +6,13 @@ import signal
 import pytest
 from hypothesis import settings
 
-# No test is timed; on a checking machine the same examples every time, elsewhere new ones.
+# Hypothesis has no time limit; it uses the same examples every time in continuous integration, elsewhere new ones.
 settings.register_profile("house", deadline=None, derandomize="CI" in os.environ)
 settings.load_profile("house")
 
 
 def pytest_configure():
-    """Let Ctrl-C reach the programs under test: started in the background, a shell has it ignored, and children inherit that."""
+    """Let Ctrl-C reach the programs under test. A shell ignores it for programs in the background, and children inherit that."""
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -26,7 +26,9 @@ def figures_drawn(monkeypatch):
     close, seen = figures.plt.close, []
 
     def look(figure="all"):
-        if figure == "all":  # pyplot says this by itself when it chooses its backend, before the first figure of a process
+        if (
+            figure == "all"
+        ):  # pyplot calls this itself when it chooses its backend, before the first figure of a process
             return close(figure)
         hidden = free_legends.hidden(figure)
         assert not hidden, f"legends over data in {hidden}"

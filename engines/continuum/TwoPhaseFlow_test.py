@@ -1,4 +1,4 @@
-"""TwoPhaseFlow from Python: arrays and their shapes, refusals by name, states, and a solid of the house as vessel."""
+"""TwoPhaseFlow from Python: arrays and their shapes, refusals by name, states, and one of Graindrive's solids as vessel."""
 
 import numpy as np
 import pytest
@@ -26,11 +26,11 @@ def test_arrays_have_rows_of_y_and_columns_of_x():
     assert made.velocity.shape == (CELLS, CELLS, 2)
     assert made.face_velocity_x.shape == (CELLS, CELLS + 1)
     assert made.face_velocity_y.shape == (CELLS + 1, CELLS)
-    # y grows with the row: the bed lies in the first ones, off the wall's layer, which shows what lies beside it.
+    # y grows with the row: the bed is in the first rows, except in the wall's layer, which has the values of the cells beside it.
     # In three steps the wall turns by 0.003.
     middle = slice(CELLS // 2 - 4, CELLS // 2 + 4)
     assert np.allclose(made.fraction[middle, CELLS // 2], HALF[middle, CELLS // 2], rtol=0, atol=1e-3)
-    # The wall turns rigidly: u = -spin y, v = spin x, exact in the solid.
+    # The wall rotates rigidly: u = -spin y, v = spin x, exact in the solid.
     solid = made.openness[:, 0] == 0
     assert np.allclose(made.velocity[solid, 1, 0], -0.1 * X[solid], rtol=0, atol=1e-12)
 
@@ -47,7 +47,7 @@ def test_a_vessel_is_the_section_of_any_solid():
     square = ~surfaces.swept_outline([(-3, -3), (3, -3), (3, 3), (-3, 3)])
     openness = flow(solid=square, transition=1).openness
     x, y = np.meshgrid(X, X)
-    # chi by the formula of Oba, Otsuki (2025), (41), off the corners, where the nearest point is on an edge.
+    # chi by the formula of Oba, Otsuki (2025), (41), where the nearest point is on an edge, not at a corner.
     depth = np.maximum(np.abs(x), np.abs(y)) - 3
     off = np.minimum(np.abs(x), np.abs(y)) < 2
     expected = np.clip(0.5 * (1 - np.sin(np.pi * np.clip(depth, -SPACING, SPACING) / (2 * SPACING))), 0, 1)

@@ -1,4 +1,4 @@
-"""Bodies that a drive refuses on either loop, and what it does with a body that becomes fit for it in mid-run."""
+"""Bodies that a drive refuses on both loops, and bodies that it accepts only after a change during the run."""
 
 import disks
 import numpy as np

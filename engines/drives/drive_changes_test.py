@@ -1,4 +1,4 @@
-"""A drive whose settings are changed in mid-run goes on from the present place and phase, on either loop."""
+"""A drive whose settings change during a run continues from the present position and phase, on both loops."""
 
 import math
 
@@ -11,7 +11,7 @@ from graindrive.scenes import scene as whole_scene
 from yade import O
 
 DT = 1e-3
-# A leg's first place is the body's, known to EPS of its size; the closed form adds a few EPS of an angle of some 10 rad, the
+# A leg begins at the body's position, known to EPS of its size; the closed form adds a few EPS of an angle of some 10 rad, the
 # integrator one EPS of the place at every step.
 ROUND_OFF = 1e-12
 
@@ -43,7 +43,7 @@ CHANGES = [
     dict(direction=(-1, 0, 0)),
     dict(direction=(0, 1, 0)),
     dict(phase=1.1),
-    dict(phase=0.3),  # the same as before: the motion starts anew from it
+    dict(phase=0.3),  # the same value as before, but a new motion starts from it
     dict(phase=-2.0, amplitude=0.1, period=0.7),
 ]
 
@@ -79,7 +79,7 @@ def test_an_oscillation_goes_on_from_its_place_and_phase(loop, how, change):
     if settings.get("direction") == (0, 1, 0):  # x is free again: it keeps its velocity
         expected[:, 0] += velocity[0] * DT * np.arange(1, 301)
     np.testing.assert_allclose(after, expected, rtol=0, atol=ROUND_OFF)
-    # No step is longer than the largest speed allows, the first after the change among them.
+    # No displacement in a step exceeds that of the largest speed, also not in the first step after the change.
     speed = settings["amplitude"] * (1 if settings.get("form") else 2 * math.pi / settings["period"])
     axis = int(np.argmax(np.abs(settings.get("direction", (1, 0, 0)))))
     steps = np.abs(np.diff(np.r_[before[-1, axis], after[:, axis]]))
@@ -98,7 +98,7 @@ def test_the_angle_runs_on_through_many_changes(loop):
         further = angle + 2 * math.pi * 7 * DT / drive.period
         x += drive.amplitude * (math.sin(further) - math.sin(angle))
         angle = further
-    # 60 legs add 60 roundings of place and angle.
+    # 60 legs add 60 round-offs of position and angle.
     assert O.bodies[body].state.pos[0] == pytest.approx(x, abs=60 * 16 * EPS)
 
 
@@ -210,7 +210,7 @@ def test_a_drum_keeps_its_bodies(loop):
 
 @each_loop
 def test_work_stays_the_energy_of_the_grain_through_a_change(loop):
-    # Frictionless and undamped. The sum is exact for each step; the contact's potential is returned to (dt/t_c)^2 (see
+    # No friction and damping. The sum is exact for each step; the contact's potential is given back to (dt/t_c)^2 (see
     # drives_test.py).
     O.dt = 1e-5
     body, grain = disks.disk(0, 0), disks.disk(1.001, 0)
@@ -234,7 +234,7 @@ def test_work_stays_the_energy_of_the_grain_through_a_change(loop):
 def changed_drives():
     ident, _ = disks.clump([(-0.3, 0.1), (0.3, -0.1)], at=(0, 5))
     spinner, turning = disks.disk(8, 0), disks.disk(16, 0)
-    disks.disk(1.2, 5)  # is struck
+    disks.disk(1.2, 5)  # a grain hits it
     drives = [
         engines.OscillationDrive(body=ident, label="shake", **BEFORE),
         engines.SpinTranslateDrive(body=spinner, velocity=(1, 0, 0), spin=(0, 0, 2), label="spin"),

@@ -32,7 +32,7 @@ def scene():
 
 
 def pressed_clump():
-    """A driven clump between two frozen disks that press on it unevenly; return its id."""
+    """A driven clump between two frozen disks that press on it with different forces; return its id."""
     ident, _ = disks.clump([(-0.3, 0), (0.3, 0)], at=(0, 0))
     disks.disk(-0.45, 0.77, frozen=True)
     disks.disk(1.07, 0.12, frozen=True)

@@ -1,4 +1,4 @@
-"""A drive that slept, or whose body was moved by something else, goes on from the present place and phase, on either loop."""
+"""A drive that was `dead`, or whose body was moved otherwise, continues from the present position and phase, on both loops."""
 
 import builtins
 import math
@@ -35,7 +35,7 @@ def drum(body):
 
 
 def way(kind, begin, t0, t):
-    """Where the body is a time `t` after it was at `begin` and the drive had acted for `t0`; t of shape (n,)."""
+    """The body's position a time `t` after it was at `begin` and the drive had acted for `t0`; t of shape (n,)."""
     if kind is oscillation:
         omega = 2 * math.pi / 0.9
         return begin + np.c_[0.8 * (np.sin(omega * (t0 + t) + 0.3) - np.sin(omega * t0 + 0.3)), 0 * t, 0 * t]
@@ -66,7 +66,7 @@ def test_a_woken_drive_makes_up_for_nothing(kind, loop):
     velocity = np.array(state.vel)
     before = np.array(state.pos)
     disks.run(70)
-    # Nothing acts on it: it goes on with the velocity that it had.
+    # Nothing acts on the body, so it keeps its velocity.
     np.testing.assert_allclose(state.pos, before + 70 * DT * velocity, rtol=0, atol=ROUND_OFF)
     asleep = np.array(state.pos)
     drive.dead = False
@@ -125,9 +125,9 @@ def test_a_free_disk_is_driven_from_where_it_is_when_the_drive_first_wakes(loop,
     monkeypatch.setattr(builtins, "sleeping_drive", drive, raising=False)  # where PyRunner's commands find it
     wake = PyRunner(command="sleeping_drive.dead = False", iterPeriod=1, firstIterRun=150, nDo=1)
     put_on(loop, wake, drive)
-    disks.run(400)  # in one go: GrainLoop does not write a free disk to YADE at every step
+    disks.run(400)  # in one run, because GrainLoop does not write a free disk to YADE at every step
     acted = drive.elapsed + DT
-    assert acted == pytest.approx(250 * DT, abs=1.5 * DT)  # the runner stands before the drive
+    assert acted == pytest.approx(250 * DT, abs=1.5 * DT)  # the runner acts before the drive
     free = 400 * DT - acted
     expected = way(oscillation, np.array([1 + 0.5 * free, 2, 0]), 0.0, np.array([acted]))[0]
     assert O.bodies[body].state.pos[0] == pytest.approx(expected[0], abs=ROUND_OFF)
@@ -150,4 +150,6 @@ def test_steps_asleep_do_no_work(loop):
     drive.dead = False
     disks.run(1)
     assert drive.force[0] < -10
-    assert drive.work - work == pytest.approx(-drive.force[0] * 1.0 * O.dt, rel=1e-9)  # W is known to 1e-16 of 1e-1 J
+    assert drive.work - work == pytest.approx(
+        -drive.force[0] * 1.0 * O.dt, rel=1e-9
+    )  # W is of order 1e-1 J, with a round-off of 1e-16 of it

@@ -1,4 +1,4 @@
-"""Prescribed motions keep to their closed forms, leave the rest free, and do exactly the work that the grains receive."""
+"""Prescribed motions follow their closed forms, leave other directions free, and do exactly the work that grains receive."""
 
 import math
 
@@ -41,7 +41,7 @@ def test_ten_million_steps_keep_to_the_formula():
         engines.SpinTranslateDrive(body=bodies[2], velocity=velocity, spin=(0, 0, spin), dofs="xyzXYZ"),
         engines.DrumDrive(bodies=[bodies[3]], axisPoint=(8, 1, 0), angularVelocity=(0, 0, spin)),
     )
-    # Two steps that binary numbers do not hold: summed, as O.time is, they would be off by 1e-7 in the end.
+    # Two time steps that are not exact as binary numbers: their sum, as in O.time, would be wrong by 1e-7 in the end.
     t = 0.0
     for dt, steps in ((1e-3, 4_000_000), (0.7e-3, 5_999_000), (1e-3, 1_000)):
         O.dt = dt
@@ -98,7 +98,7 @@ def test_velocity_is_the_mid_step_one(form):
         chord = (displacement((step + 1) * dt, 0.8, 0.9, 0.3, form) - displacement(step * dt, 0.8, 0.9, 0.3, form)) / dt
         # A difference of numbers of order 1 over dt: a few EPS/dt.
         assert state.vel[0] == pytest.approx(chord, abs=16 * EPS / dt)
-        # And, being a chord, it is the velocity at the middle of the step to (omega dt)^2/24.
+        # As the slope of a chord it is the velocity at the middle of the step, to (omega dt)^2/24.
         angle, omega = 2 * math.pi * (step + 0.5) * dt / 0.9 + 0.3, 2 * math.pi / 0.9
         rate = 0.8 * omega * math.cos(angle) if form == "displacement" else 0.8 * math.sin(angle)
         assert state.vel[0] == pytest.approx(rate, abs=0.8 * omega * (omega * dt) ** 2 / 20)
@@ -113,7 +113,7 @@ def test_a_change_of_time_step_neither_stops_nor_jumps():
         steps = int(rng.integers(1, 5))
         run(steps) if steps > 3 else [O.step() for _ in range(steps)]
         t += steps * O.dt
-        # 400 changes add 400 roundings of t, each less than EPS.
+        # 400 changes add 400 round-offs of t, each below EPS.
         assert O.bodies[body].state.pos[0] == pytest.approx(math.sin(2 * math.pi * t), abs=8 * 400 * EPS)
 
 
@@ -130,7 +130,7 @@ def test_what_is_not_driven_falls_as_leapfrog_says():
     fall = -g * dt**2 * steps * (steps + 1) / 2
     for body in bodies:
         state = O.bodies[body].state
-        # `steps` additions of numbers below |fall| round off at most EPS |fall| each.
+        # `steps` additions of numbers below |fall| have a round-off of at most EPS |fall| each.
         assert state.pos[1] == pytest.approx(fall, rel=steps * EPS)
         assert state.vel[1] == pytest.approx(-g * steps * dt, rel=steps * EPS)
         assert state.pos[2] == 0
@@ -151,7 +151,7 @@ def test_spin_and_translation_keep_the_orientation_of_the_closed_form():
         run(500)
         t = O.iter * O.dt
         expected = Quaternion(spin / spin.norm(), spin.norm() * t) * begin
-        # The last step is the integrator's: one rotation by omega dt, exact for a constant axis but for round-off.
+        # The integrator makes the last step: one rotation by omega dt, which for a constant axis is exact within round-off.
         close = [abs(state.ori[i] - expected[i]) for i in range(4)]
         opposite = [abs(state.ori[i] + expected[i]) for i in range(4)]
         assert min(max(close), max(opposite)) < 8 * EPS * (1 + spin.norm() * t)
@@ -214,10 +214,10 @@ def elastic(k_n, radius_eff):
 
 @pytest.mark.parametrize("kind", ["disk", "clump"])
 def test_work_on_a_struck_grain_becomes_kinetic_energy(kind):
-    # Frictionless and undamped: after the contact all the work is in the grain's motion and in what the driven body does in
-    # the directions that are free. The work's rule makes the sum of
-    # grain and drive exact for every step but for the contact's own potential, of which leapfrog returns all to (dt/t_c)^2
-    # relative in the middle of the collision and far more of it at the end, where the force has gone: 3e-9 here.
+    # No friction and damping: after the contact all the work is in the motion of the grain and of the driven body in
+    # its free directions. By the definition of the work the sum of
+    # grain and drive is exact for every step except for the contact's potential, which leapfrog gives back to (dt/t_c)^2
+    # in the middle of the collision, and far more accurately at its end, where the force is 0: 3e-9 here.
     O.dt = 1e-5
     body = disk(0, 0) if kind == "disk" else clump([(0.2, 0), (-0.2, 0)], radius=0.3)[0]
     grain = disk(1.001, 0.3)
@@ -244,7 +244,7 @@ def test_work_while_in_contact_is_kinetic_plus_elastic_energy():
     for _ in range(30):
         run(99)
         before, work, potential = O.bodies[grain].state.vel[0], drive.work, elastic(2e3, 0.25)
-        # `work` after step n has the half-step n-1/2 -> n+1/2 in it; half of the last one belongs to this time.
+        # `work` after step n contains the step from n-1/2 to n+1/2; half of this step's work belongs to time n.
         O.step()
         after = O.bodies[grain].state.vel[0]
         contact = [i for i in O.interactions if i.isReal]
@@ -253,7 +253,7 @@ def test_work_while_in_contact_is_kinetic_plus_elastic_energy():
         mass = O.bodies[grain].state.mass
         mean_velocity = 0.5 * (before + after)
         half_way = 0.5 * (work + drive.work)
-        # The contact's depth is the one at this step's start, where `force` was computed.
+        # The overlap is that at the start of this step, for which `force` was computed.
         energy = 0.5 * mass * mean_velocity**2 + elastic(2e3, 0.25)
         assert half_way == pytest.approx(energy, rel=1e-4, abs=1e-9)
         checked += potential > 0
@@ -261,7 +261,7 @@ def test_work_while_in_contact_is_kinetic_plus_elastic_energy():
 
 
 def test_spin_does_work_through_friction():
-    # A spinning disk sets a frozen-in-place grain (free to turn only) turning by an elastic tangential spring that never
+    # A spinning disk sets a grain, which is free to turn only, into rotation by an elastic tangential spring that never
     # slips: work = rotational energy + spring energies. Normal energy is constant as the grain cannot move away.
     O.dt = 1e-5
     spinner, grain = disk(0, 0), disk(0.98, 0)
@@ -362,7 +362,7 @@ def test_a_driven_body_crosses_the_period_and_meets_images():
     assert touched > 20
     run(30000)
     t = O.iter * O.dt
-    # Unwrapped, as YADE keeps it: several periods away.
+    # YADE's positions are not wrapped: several periods away.
     assert O.bodies[body].state.pos[0] == pytest.approx(1 - 2 * t, rel=4 * EPS)
     assert drive.work == pytest.approx(kinetic(grain), rel=1e-5)
 

@@ -1,4 +1,4 @@
-"""The registry of contact laws as Python sees it: names, numbers, terms and critical time steps."""
+"""The registry of contact laws in Python: names, constants, terms and critical time steps."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The laws inside YADE's InteractionLoop: momentum, angular momentum, and the masses that a contact sees."""
+"""The laws in YADE's InteractionLoop: momentum, angular momentum, and the effective masses of contacts."""
 
 import math
 
@@ -49,7 +49,7 @@ def test_momentum_is_conserved_to_round_off(law, lever):
     loop(LAWS[law](lever), friction=0.3)
     before = total_momentum()
     run(500)
-    # 25 disks of momentum 1: each of 500 steps rounds each velocity by EPS.
+    # 25 disks of momentum 1, with a round-off of EPS in each velocity in each of 500 steps.
     np.testing.assert_allclose(total_momentum(), before, rtol=0, atol=25 * 500 * EPS)
 
 
@@ -61,13 +61,13 @@ def test_angular_momentum_is_conserved_when_forces_act_at_the_contact_point(law)
     before, spins = total_angular_momentum(), [b.state.angVel[2] for b in O.bodies]
     run(500)
     assert max(abs(b.state.angVel[2] - s) for b, s in zip(O.bodies, spins)) > 0.1  # there was friction
-    # 25 disks with lever arms of up to 6: as the momentum, times 6.
+    # 25 disks with lever arms of up to 6: that of the momentum times 6.
     assert total_angular_momentum() == pytest.approx(before, abs=6 * 25 * 500 * EPS)
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_radius_as_lever_arm_adds_exactly_the_torque_of_the_overlap(law):
-    # Arms R1 + R2 instead of R1 + R2 - delta: the pair gains delta F_t dt each step.
+    # The levers sum to R1 + R2 instead of the distance R1 + R2 - delta, so the pair gains delta F_t dt each step.
     disk(0, 0, 0.5, (1, 0.4), 3.0)
     disk(0.99, 0.1, 0.55, (-0.5, 0), -1.0)
     loop(LAWS[law]("radius"), friction=0.3)

@@ -1,4 +1,4 @@
-"""Contacts before a step are those that YADE's step then finds: the same pairs, forces, overlaps and springs."""
+"""Contacts before a step are those that YADE's next step finds: the same pairs, forces, overlaps and springs."""
 
 import disks
 import numpy as np
@@ -63,7 +63,7 @@ def test_the_next_step_finds_them(law, lever, period, steps):
     O.step()
     found = by_pair(engines.contact_table(O._sceneObj), COLUMNS)
     assert before.keys() == found.keys() and len(found) > 15
-    # YADE winds positions in another order of sums: round-off of positions of 5, times the stiffness of 2e5.
+    # YADE computes positions of images in another order: round-off of positions of 5, times the stiffness of 2e5.
     for pair, numbers in found.items():
         np.testing.assert_allclose(before[pair], numbers, rtol=1e-9, atol=5 * disks.EPS * 2e5)
         phys, geom = O.interactions[pair[0], pair[1]].phys, O.interactions[pair[0], pair[1]].geom

@@ -1,4 +1,4 @@
-"""GrainLoop answers at any moment: while O.run works in the background, after a pause, between two steps and within one."""
+"""GrainLoop's state can be read at any time: while O.run works in the background, after a pause, between steps and within one."""
 
 import disks
 import numpy as np
@@ -9,7 +9,7 @@ from yade import O
 
 
 def crowd(side=12):
-    """A crowd of disks between frozen ones, in motion."""
+    """Moving disks between frozen ones."""
     disks.new_scene(dt=2e-4)
     rng = np.random.default_rng(4)
     for k in range(side):
@@ -80,7 +80,7 @@ def test_overlap_and_force_of_a_contact_are_of_the_same_moment():
             present = loop.presentContacts()
             again = loop.contacts()
             for name in table:
-                np.testing.assert_array_equal(table[name], again[name])  # who looks leaves no trace
+                np.testing.assert_array_equal(table[name], again[name])  # reading does not change the state
             for each in (table, present):
                 for overlap, force in zip(each["overlap"], np.linalg.norm(each["normal_force"], axis=1)):
                     r_eff = 0.25 if moving == "free" else 0.4

@@ -1,4 +1,4 @@
-"""One file for a scene on GrainLoop: it continues to the bits of a run never stopped, or is refused with the reason."""
+"""One file for a scene on GrainLoop: a run from it equals an uninterrupted one to the last bit; wrong files are refused."""
 
 import disks
 import numpy as np
@@ -24,7 +24,7 @@ def plain(value):
 
 
 def state():
-    """All that moves and all that drives and measures keep, to the last bit."""
+    """The state of bodies, drives and measures, to the last bit."""
     kept = {e.label: {k: plain(v) for k, v in e.dict().items()} for e in O.engines if e.label not in ("", "loop")}
     return O.iter, O.time, disks.everything().tolist(), kept
 
@@ -73,7 +73,7 @@ def test_an_empty_yade_goes_on_from_one_file(loop, tmp_path):
     disks.run(AFTER)
     if loop == "grain":
         assert expected == state()
-    else:  # O.load orders the interactions anew: forces are summed in another order, and 1e-16 grows in 200 steps
+    else:  # O.load changes the order of interactions, so forces are summed in another order, and 1e-16 grows in 200 steps
         np.testing.assert_allclose(state()[2], expected[2], rtol=0, atol=1e-9)
 
 

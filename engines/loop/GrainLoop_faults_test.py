@@ -24,7 +24,7 @@ def bed():
 
 
 def step():
-    """One action of the loop in this thread, so that what it throws comes here."""
+    """Make one step of the loop in this thread, so that its error is raised here."""
     O.engines[-1]()
 
 
@@ -142,7 +142,7 @@ def test_bounds_that_are_none_are_refused(bad):
 
 @pytest.mark.parametrize("periods", [(9, 0, 0), (10, 21, 0)])
 def test_periods_that_contradict_the_cell_are_refused(periods):
-    scene.start(10, 5)  # y of the cell is longer than the bed on purpose, 30
+    scene.start(10, 5)  # along y the cell, 30, is longer than the bed, so that it does not repeat there
     scene.add_disks([2], [2], [0.5], 1.0)
     O.engines = [GrainLoop(periods=periods)]
     O.dt = 1e-4
@@ -168,7 +168,7 @@ def test_material_numbers_are_checked_under_every_law(law, bad):
 
 
 def test_a_run_that_fails_in_its_first_step_raises_every_time():
-    """YADE's O.run(n, True) returned as if nothing had happened in a third of such runs."""
+    """YADE's O.run(n, True) returned without an error in a third of such runs."""
     for _ in range(12):
         disks.new_scene(dt=1e-3)
         disks.disk(0, 0), disks.disk(0.5, 0)

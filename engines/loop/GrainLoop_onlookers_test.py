@@ -1,4 +1,4 @@
-"""Whoever else looks at bodies or writes into them while GrainLoop runs: they see the truth, and are heard at once."""
+"""Other engines that read or change bodies while GrainLoop runs: they read the present state, and changes act at once."""
 
 import disks
 import numpy as np
@@ -96,7 +96,7 @@ def test_a_frozen_disk_set_in_motion_moves_from_that_step_on():
 
     seen = both_loops(build, steps=160)
     assert_same_motion(seen)
-    assert seen[1][1][1] == pytest.approx(10 * 1e-3, rel=1e-9)  # ten steps, not a hundred later
+    assert seen[1][1][1] == pytest.approx(10 * 1e-3, rel=1e-9)  # after ten steps, not after a hundred
 
 
 def test_a_frozen_disk_put_elsewhere_is_met_there():
@@ -116,11 +116,11 @@ def test_a_kinematic_engine_of_yades_moves_frozen_disks():
 
 
 def speeds_of_a_disk_on_a_base_that_begins_to_slide(loop, place):
-    """The speeds along x after each of ten steps; TranslationEngine stands at that place among YADE's four engines."""
+    """The speeds along x after each of ten steps, with TranslationEngine at that position among YADE's four engines."""
     disks.new_scene(dt=1e-4)
     base, disk = disks.disk(0, 0, frozen=True), disks.disk(0, 0.99)
     disks.loop(disks.hertz(), friction=0.4, gravity=(0, -10))
-    disks.run(3)  # they touch before the base moves
+    disks.run(3)  # disks touch the base before it moves
     engine = wrapper.TranslationEngine(ids=[base], translationAxis=(1, 0, 0), velocity=0.1, dead=True)
     O.engines = O.engines[:place] + [engine] + O.engines[place:]
     if loop == "grain":
@@ -202,7 +202,7 @@ def test_an_engine_added_later_is_looked_at():
 
 
 def test_measures_make_nobody_write_all_bodies():
-    """Graindrive's own engines ask the loop: bodies in between stay as they were shown last, and nothing is paid for them."""
+    """Graindrive's own engines read from the loop, so YADE's bodies are not written for them, which would cost time."""
     _, free = bed()
     put_in(engines.ContactForceBinner(body=free[0]))
     loop = grain_loop.use_grain_loop()

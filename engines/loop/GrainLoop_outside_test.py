@@ -113,7 +113,7 @@ def test_a_restart_goes_on_with_the_same_force(tmp_path):
 
 
 def test_an_engine_of_ones_own_that_reads_free_disks_sees_them_as_they_are():
-    """Drag on a falling disk, F = -c v: only true velocities give exp(-c t/m) in place of free fall."""
+    """Drag F = -c v on a falling disk: the velocity approaches its limit as exp(-c t/m) only if F uses present velocities."""
     seen = []
     for loop in ("yade", "grain"):
         ids = scene()
@@ -130,7 +130,7 @@ def test_an_engine_of_ones_own_that_reads_free_disks_sees_them_as_they_are():
         disks.run(1000)
         seen.append(O.bodies[ids["free"]].state.vel[1])
     assert seen[1] == pytest.approx(seen[0], rel=1e-12)
-    assert seen[0] > -0.2  # of free fall's -1: terminal velocity is m g/c = 0.157
+    assert seen[0] > -0.2  # over the -1 of free fall; the terminal velocity is m g/c = 0.157
 
 
 def test_measures_and_drives_see_the_grains_forces_alone():

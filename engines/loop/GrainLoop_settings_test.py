@@ -1,4 +1,4 @@
-"""Settings of GrainLoop that change between or within runs: heard at once, as if the scene had been built with them."""
+"""Settings of GrainLoop that change between or within runs act at once, as if the scene had been built with them."""
 
 import disks
 import numpy as np
@@ -23,7 +23,7 @@ def crowd(**settings):
 
 
 def changed(name, value, **settings):
-    """What comes out when the setting is changed before the second half of a run."""
+    """The state after a run in which the setting is changed before the second half."""
     loop = crowd(**settings)
     disks.run(STEPS)
     setattr(loop, name, value)
@@ -32,7 +32,7 @@ def changed(name, value, **settings):
 
 
 def read_anew(name, value, **settings):
-    """The same by reading the whole scene anew, springs kept."""
+    """The same with the whole scene read again, springs kept."""
     loop = crowd(**settings)
     disks.run(STEPS)
     setattr(loop, name, value)
@@ -56,11 +56,11 @@ def read_anew(name, value, **settings):
 @pytest.mark.parametrize("friction", [0, 0.2])
 def test_a_setting_is_heard_at_once(name, value, friction):
     found, expected = changed(name, value, friction=friction), read_anew(name, value, friction=friction)
-    # The order of sums differs after reading anew: round-off, times its growth in 400 steps of sliding contacts.
+    # After the second reading the order of sums differs: round-off, times its growth in 400 steps of sliding contacts.
     tolerance = 1e-4 if name == "precision" else 1e-10
     np.testing.assert_allclose(found[:, 0:6], expected[:, 0:6], rtol=0, atol=tolerance)
     if name not in ("precision", "threads", "skin"):
-        assert np.abs(found - changed("syncEvery", 0, friction=friction)).max() > 1e-6  # it does matter
+        assert np.abs(found - changed("syncEvery", 0, friction=friction)).max() > 1e-6  # the setting has an effect
 
 
 def test_settings_survive_a_checkpoint_as_they_were_changed(tmp_path):

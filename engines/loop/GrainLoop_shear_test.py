@@ -12,7 +12,7 @@ SIDE, RATE = 8, 2.0
 
 
 def crowd(seed=3, side=SIDE, drive=None, rotation=True):
-    """A dense crowd of side^2 disks in the motion of the mean flow, on YADE's loop; returns the ids."""
+    """side^2 dense disks that move with the mean flow, on YADE's loop; returns the ids."""
     disks.new_scene(dt=1e-4, period=(side, side, side))
     O.cell.homoDeform = 1
     rng = np.random.default_rng(seed)
@@ -63,15 +63,15 @@ def test_it_moves_as_on_yades_loop_and_follows_its_cell():
     sheared()
     loop = grain_loop.use_grain_loop()
     disks.run(2500)
-    # Both leapfrogs to round-off, which collisions make grow; half a strain, velocities up to 16.
+    # Both loops agree to round-off, which collisions let grow; a strain of 0.5, velocities up to 16.
     assert largest_difference(seen_from_one_image(), yades) < 1e-9
     assert str(O.cell.dict()) == cell
     assert O.cell.hSize[0][1] == pytest.approx(2499 * O.dt * RATE * SIDE)
-    assert loop.positions[:, 1].max() < SIDE + 1  # wrapped where lists were made anew
+    assert loop.positions[:, 1].max() < SIDE + 1  # wrapped when new lists were made
 
 
 def test_springs_and_stress_agree_with_yades_loop_in_mid_shear():
-    """The drive sees the same contacts on both loops; the pressure makes the cell breathe."""
+    """The drive reads the same contacts on both loops; the pressure makes the cell's height oscillate."""
     measured = []
     for on_grain in (False, True):
         drive = engines.ShearDrive(shearRate=RATE, pressure=2e3, pressureDamping=2e4, every=3, label="shear")
@@ -81,7 +81,7 @@ def test_springs_and_stress_agree_with_yades_loop_in_mid_shear():
         disks.run(600)
         measured.append([*drive.sums, O.cell.hSize[1][1], O.cell.hSize[0][1], *drive.profileCounts])
     # GrainLoop keeps the affine part of the motion affine; YADE's homoDeform = 1 leaves velGrad^2 x dt out. With |growth| up to
-    # 0.1 over a time of 0.06 that is 1e-3 of the velocities, which the first collisions make 1e-2.
+    # 0.1 over a time of 0.06 the difference is 1e-3 of the velocities, and 1e-2 after the first collisions.
     assert measured[1] == pytest.approx(measured[0], rel=3e-2)
     assert abs(measured[1][15] - SIDE) > 1e-3 * SIDE
 
@@ -132,7 +132,7 @@ def test_saved_and_loaded_by_yade_it_goes_on(tmp_path):
     expected = seen_from_one_image()
     O.load(str(tmp_path / "scene.xml.gz"))
     disks.run(200)
-    # Lists and their order are made anew from bodies: round-off.
+    # Lists are made again from bodies, in another order: round-off.
     assert largest_difference(seen_from_one_image(), expected) < 1e-9
 
 
@@ -170,9 +170,9 @@ def test_the_loops_hand_a_sheared_scene_over_in_mid_shear():
     grain_loop.use_grain_loop()
     O.cell.velGrad = Matrix3(0, RATE, 0, 0, 0, 0, 0, 0, 0)
     disks.run(200)
-    grain_loop.use_yade_loop()  # its integrator must not take the gradient for new, which would add up to 16 to velocities
+    grain_loop.use_yade_loop()  # its integrator must not take the gradient as a change, which would add up to 16 to velocities
     disks.run(100)
-    # Contacts are found anew in the cell of the step before: springs of new contacts miss one step.
+    # Contacts are found again in the cell of the step before: springs of new contacts lack one step.
     assert largest_difference(seen_from_one_image(), whole) < 0.05
 
 

@@ -1,4 +1,4 @@
-"""Solids in GrainLoop: as YADE's own loop has them, in space and for disks in the plane."""
+"""Solids in GrainLoop against YADE's own loop, in space and for disks in the plane."""
 
 import math
 
@@ -25,7 +25,7 @@ FLOOR = surfaces.half_space((0, 0, 0), (0, 0, 1))
 
 
 def yades(gravity=(0, 0, -10), before=()):
-    """YADE's loop that knows solids."""
+    """YADE's loop with the functors for solids."""
     O.engines = [
         ForceResetter(),
         InsertionSortCollider(
@@ -68,7 +68,7 @@ def heap(n=60, seed=2, over=(0, 0, 3), size=2):
 
 
 def dented():
-    """A block with a cylinder taken out, on which a ball sits."""
+    """A block with a cylindrical hole and a ball on top."""
     block = FLOOR - surfaces.cylinder((0, 0, 0.5), (0, 1, 0), 1.5)
     return block | surfaces.ball((1.5, 0.3, 0.2), 1)
 
@@ -99,14 +99,14 @@ def test_spheres_meet_solids_as_on_yades_loop(scene):
         disks.run(2200)
         after.append(state())
         forces.append(np.concatenate([binner.force, binner.torque, binner.normalForce]))
-    assert np.abs(forces[0]).max() > 0.01  # they met
-    # Springs between spheres and at solids turn by another formula; collisions make the difference grow.
+    assert np.abs(forces[0]).max() > 0.01  # grains and solid have collided
+    # The loops turn springs by different formulas; collisions let the difference grow.
     assert np.abs(after[0] - after[1]).max() < 1e-5
     assert np.abs(forces[0] - forces[1]).max() < 1e-5 * np.abs(forces[0]).max()
 
 
 def test_a_sampled_torus():
-    """A function of one's own: the distance to a torus about z."""
+    """A user's function: the distance to a torus about z."""
 
     def torus(points):
         ring = np.hypot(points[:, 0], points[:, 1]) - 2
@@ -137,14 +137,14 @@ def test_in_a_periodic_cell_the_nearest_image_is_met():
         after.append(state())
     difference = after[0] - after[1]
     difference[:, 0] -= 3
-    difference[0] = 0  # the solid, whose place is the origin of its surface's coordinates
+    difference[0] = 0  # the solid, whose position is the origin of its surface's coordinates
     difference[:, :2] -= 6 * np.round(difference[:, :2] / 6)
     assert np.abs(difference).max() < 1e-9
-    assert np.abs(after[0][1:, 3]).max() > 0.5  # it pushed them aside
+    assert np.abs(after[0][1:, 3]).max() > 0.5  # the solid has pushed the grains aside
 
 
 def test_disks_meet_the_section_of_a_swept_outline():
-    """Of an outline swept along z that turns about z; a solid whose section changes along z is refused."""
+    """An outline swept along z that turns about z is accepted; a solid whose section changes along z is refused."""
     star = [(2, 0), (0.5, 0.5), (0, 2), (-0.5, 0.5), (-2, 0), (-0.5, -0.5), (0, -2), (0.5, -0.5)]
     after = []
     for loop in (yades, ours):
@@ -203,7 +203,7 @@ def test_saved_and_loaded_it_goes_on_with_its_springs_at_solids(tmp_path):
     O.reset()
     O.load(str(tmp_path / "scene.yade"))
     disks.run(100)
-    # The spring is brought into the tangent plane anew, which it left by round-off.
+    # The spring is projected on the tangent plane again, from which it differs by round-off.
     assert np.abs(straight - state()).max() < 1e-9
 
 
@@ -225,7 +225,7 @@ def test_contacts_with_a_solid_carry_the_weight():
 
 @pytest.mark.parametrize("period", [None, (20, 6, 40)])
 def test_a_scene_with_an_endless_solid_is_taken_over_and_given_back_with_its_springs(period):
-    """Springs between spheres and at the solid go along both ways, in a periodic cell too, where YADE sorts its bounds."""
+    """Springs between spheres and at the solid are kept in both exchanges, also in a periodic cell, where YADE sorts bounds."""
     after = []
     for exchanged in (False, True):
         disks.new_scene(dt=2e-4, period=period)
@@ -307,7 +307,7 @@ def test_what_is_put_into_a_solid_or_under_one_stops_the_run_at_once():
         else:
             O.bodies[ident].state.pos = Vector3(4, 0, 0)
         with pytest.raises(RuntimeError, match="overlaps the solid of body 0"):
-            disks.run(2)  # a step sees solids where the one before has left them
+            disks.run(2)  # a step uses the solids' positions at the end of the step before
 
 
 def test_another_surface_is_refused_by_a_checkpoint(tmp_path):

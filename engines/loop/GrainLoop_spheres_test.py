@@ -1,4 +1,4 @@
-"""GrainLoop over spheres: as YADE's own loop has it, the same bits however it is run, and what it shows."""
+"""GrainLoop over spheres: against YADE's own loop, the same bits on any number of threads, and its views."""
 
 import disks
 import numpy as np
@@ -28,7 +28,7 @@ def both(build, steps, **settings):
 
 def test_a_falling_bed_moves_as_on_yades_loop():
     yade, grain = both(spheres.bed, 600, gravity=(0.3, 0, -1))
-    # Springs are turned by another formula: a 1e-5 of a radian a step, to its third power.
+    # The loops turn springs by different formulas: 1e-5 rad a step, and differences of its third power.
     assert np.abs(yade - grain).max() < 1e-6
     assert np.abs(yade[:, 3:6]).max() > 0.1
 
@@ -47,7 +47,7 @@ def test_every_law_for_spheres(law):
 
 
 def test_bodies_held_driven_and_half_free_feel_what_they_feel_on_yades_loop():
-    """A sphere that slides along x and may turn about y alone, one that is driven, one that is pushed from outside."""
+    """A sphere that may move along x and turn about y only, a driven one, one with an external force."""
 
     def build():
         spheres.bed(layers=3, side=4)
@@ -64,7 +64,7 @@ def test_bodies_held_driven_and_half_free_feel_what_they_feel_on_yades_loop():
 
 
 def test_a_clump_tumbles_and_hits_with_an_error_of_the_first_order_of_yades_integrator():
-    """The angular momentum without torque stays to round-off; YADE's own integrator turns with an error of the order of dt."""
+    """Without torque angular momentum is kept to round-off; YADE's own integrator has an error of order dt in the rotation."""
     differences = []
     for dt in (4e-4, 2e-4, 1e-4):
         after = []
@@ -77,7 +77,7 @@ def test_a_clump_tumbles_and_hits_with_an_error_of_the_first_order_of_yades_inte
             disks.run(round(0.8 / dt))
             after.append(state())
         differences.append(np.abs(after[0] - after[1]).max())
-    assert abs(after[0][4, 5] + 1) > 0.2  # they met
+    assert abs(after[0][4, 5] + 1) > 0.2  # the spheres have collided
     assert differences[0] < 1e-3
     assert differences[1] / differences[0] == pytest.approx(0.5, abs=0.05)
     assert differences[2] / differences[1] == pytest.approx(0.5, abs=0.05)
@@ -100,7 +100,7 @@ def test_a_clump_without_torque_keeps_its_angular_momentum_and_energy():
         disks.run(500)
         seen.append(energy())
     assert np.abs(np.array(body.angMom) - first).max() < 1e-13  # 20,000 sums of zero, and a round-off of writing
-    # Midpoint in time: the energy swings by (w dt)^2, 1e-5, and does not drift.
+    # Midpoint rule: the energy oscillates by (w dt)^2, 1e-5, and does not drift.
     assert np.abs(np.array(seen) / start - 1).max() < 1e-4
 
 
@@ -152,12 +152,12 @@ def test_saved_and_loaded_it_goes_on_with_its_springs(tmp_path):
     O.load(str(tmp_path / "scene.yade"))
     assert O.engines[-1].dimensions == 3 and list(O.engines[-1].springs) == springs
     disks.run(100)
-    # Springs come back as numbers, rows are sorted anew: sums in another order.
+    # Springs are restored, but rows are sorted again: sums in another order.
     assert np.abs(straight - state()).max() < 1e-9
 
 
 def test_contacts_balance_and_carry_the_weight():
-    """At rest the contacts of every sphere carry its weight."""
+    """At rest the contacts of every sphere bear its weight."""
     disks.new_scene(dt=5e-4, period=(4, 4, 50))
     for k in range(4):
         for j in range(4):
@@ -186,7 +186,7 @@ def test_a_settled_bed_weighs_on_its_base_what_it_weighs():
     for _ in range(100):
         disks.run(100)
         forces.append(loop.walls["z_low"]["force"])
-    # It swings sideways by a thousandth of its weight still, which has little part in the mean; upwards by less than 1e-4.
+    # Sideways forces still oscillate by 1e-3 of the weight, with little effect on the mean; vertical ones by less than 1e-4.
     assert np.mean(forces, axis=0)[2] == pytest.approx(-weight, rel=1e-3)
     assert np.abs(np.mean(forces, axis=0)[:2]).max() < 1e-3 * weight
 
@@ -217,7 +217,7 @@ def test_a_pressed_lid_and_a_sliding_floor():
         disks.run(50)
         pressures.append([loop.walls[side]["measuredPressure"] for side in ("z_low", "z_high")])
     assert loop.walls["z_high"]["area"] == 16
-    error = np.std(pressures, axis=0) / np.sqrt(20)  # it rings and shears, some twenty times in the mean
+    error = np.std(pressures, axis=0) / np.sqrt(20)  # the pressure oscillates: the mean has some 20 independent values
     assert (np.abs(np.mean(pressures, axis=0) - 3) < 3 * error).all() and (error < 0.1).all()
     drawn, aside = np.mean(loop.velocities[:, 0]), np.mean(loop.velocities[:, 1])
     assert drawn > 0.01 and abs(aside) < drawn / 2
@@ -253,7 +253,7 @@ def test_a_scene_in_space_is_refused_by_the_loop_in_the_plane():
 
 
 def test_a_sphere_that_is_moved_by_hand_meets_its_new_neighbours():
-    """At once, as on YADE's loop, however far it was moved; into another one it stops the run."""
+    """A moved sphere acts at once, as on YADE's loop, however far it was moved; overlap with another one stops the run."""
     after = []
     for loop in (spheres.loop, spheres.grain_loop):
         disks.new_scene(dt=2e-4)
@@ -265,7 +265,7 @@ def test_a_sphere_that_is_moved_by_hand_meets_its_new_neighbours():
         disks.run(100)
         after.append(state())
     assert abs(after[0][0, 3]) > 0.1
-    # YADE's collider may notice a step later, so velocities alone are the same.
+    # YADE's collider may detect it a step later, so only velocities are the same.
     assert np.abs(after[0] - after[1])[:, 3:].max() < 1e-9
     O.bodies[1].state.pos = O.bodies[2].state.pos + Vector3(0.05, 0, 0)
     with pytest.raises(RuntimeError, match="grain 1 .* grain 2 .* overlap"):

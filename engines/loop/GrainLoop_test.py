@@ -1,4 +1,4 @@
-"""GrainLoop in YADE: the same motion as YADE's own loop with the same law, drives and measures, and the same manners."""
+"""GrainLoop in YADE: the same motion as YADE's own loop with the same law, drives and measures, and the same interface."""
 
 import disks
 import numpy as np
@@ -8,12 +8,12 @@ from graindrive.loops import grain_loop
 from yade import O
 
 STEPS = 1500  # the bed has fallen onto its base and is being shaken
-# Both loops add the same forces in another order: 1e-16 a step, times the growth of round-off in 1500 steps of a shaken crowd.
+# The loops add the same forces in different orders: 1e-16 a step, times the growth of round-off in 1500 steps of shaken grains.
 ROUND_OFF = 1e-9
 
 
 def both_loops(build, steps=STEPS, **settings):
-    """Return what `observe` sees after some steps on YADE's loop and on GrainLoop, as two arrays."""
+    """Return the results of `observe` after some steps on YADE's loop and on GrainLoop, as two arrays."""
     build()
     disks.run(steps)
     expected = disks.everything()
@@ -41,7 +41,7 @@ def collision():
 
 def test_two_disks_collide_as_on_yades_loop():
     expected, found, _ = both_loops(collision, steps=2000)
-    # No crowd: round-off of 2000 steps only.
+    # Few collisions: only the round-off of 2000 steps.
     assert_same_motion(expected, found, 1e-11)
 
 
@@ -130,7 +130,7 @@ def test_contacts_match_yades():
 
 
 def test_both_loops_tell_a_contact_by_the_same_columns():
-    """Spring and point too. GrainLoop's disks have moved on by a step when it is asked, YADE's contacts are as they were."""
+    """Compares springs and points too. GrainLoop's disks have already moved by a step when they are read, YADE's contacts not."""
     tables = []
     for fast in (False, True):
         disks.new_scene()
@@ -174,7 +174,7 @@ def test_a_checkpoint_continues_to_the_last_bit(tmp_path):
 
 
 def drifting_crowd():
-    """40 disks that collide and drift through the periodic sides, by turns to the left and to the right."""
+    """40 disks that collide and move through the periodic sides, alternately to the left and to the right."""
     disks.new_scene(dt=1e-3, period=(10, 20, 10))
     rng = np.random.default_rng(3)
     for k in range(40):
@@ -193,7 +193,7 @@ def test_looking_often_changes_no_bit_of_what_is_seen():
 
     seldom, often = last_seen(blocks=10), last_seen(blocks=200)
     assert np.array_equal(often[:, 0:6], seldom[:, 0:6])
-    assert (seldom[:, 0] < 0).any() and (seldom[:, 0] > 10).any()  # some have left the box on either side
+    assert (seldom[:, 0] < 0).any() and (seldom[:, 0] > 10).any()  # some have left the box on both sides
 
 
 def test_bad_settings_are_refused():
@@ -206,5 +206,5 @@ def test_bad_settings_are_refused():
 def test_single_precision_stays_near_double():
     _, double, _ = both_loops(collision, steps=1000)
     _, single, _ = both_loops(collision, steps=1000, precision="single")
-    # Float round-off, 6e-8 of a diameter, against overlaps of 1e-2: forces to 1e-5, over a collision that turns velocities of 1.
+    # Round-off of 6e-8 d in overlaps of 1e-2 d: errors of forces of 1e-5, in a collision that reverses velocities of 1.
     assert_same_motion(double, single, 1e-4)

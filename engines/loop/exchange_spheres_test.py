@@ -1,4 +1,4 @@
-"""Spheres from YADE's loop to GrainLoop and back: which scenes are taken for spheres, what goes along, what is refused."""
+"""Spheres from YADE's loop to GrainLoop and back: which scenes count as spheres, what is kept, what is refused."""
 
 import disks
 import numpy as np
@@ -37,7 +37,9 @@ def test_a_bed_moves_as_on_yades_loop():
             assert made.dimensions == 3 and tuple(made.periods) == tuple(O.cell.size)
         disks.run(600)
         after.append(state())
-    assert np.abs(after[0] - after[1]).max() < 1e-6  # springs are turned by another formula, to third order in a step
+    assert (
+        np.abs(after[0] - after[1]).max() < 1e-6
+    )  # the loops turn springs by formulas that differ in third order of a step
     assert np.abs(after[0][:, 3:6]).max() > 0.1
 
 
@@ -61,14 +63,14 @@ def test_springs_go_along_both_ways(other_way_round):
     disks.run(100)
     grain_loop.use_yade_loop()
     disks.run(100)
-    # By the formula of the turn alone: without the springs it would be their size, 1e-3.
+    # Only the formulas of the rotation differ; without the springs the difference would be of their size, 1e-3.
     assert np.abs(state() - expected)[:, :6].max() < 1e-9
     slip = next(iter(O.interactions)).phys.slip
     assert abs(slip[1]) > 1e-4 and abs(slip[2]) > 5e-5
 
 
 def slips():
-    """The springs of all real contacts of YADE's, from the smaller id: {(id, id): (3,)}."""
+    """The springs of all real contacts in YADE, seen from the smaller id: {(id, id): (3,)}."""
     found = [c for c in O.interactions if c.isReal]
     return {tuple(sorted((c.id1, c.id2))): np.array(c.phys.slip) * (1 if c.id1 < c.id2 else -1) for c in found}
 
@@ -80,10 +82,10 @@ def test_springs_of_a_bed_are_the_same_before_and_behind():
     before = slips()
     made = grain_loop.use_grain_loop()
     assert len(made.springs) == 5 * len(before)
-    made.contacts()  # it finds its pairs, in its own order
+    made.contacts()  # it finds the pairs, in its own order
     grain_loop.use_yade_loop()
     after = slips()
-    shared = before.keys() & after.keys()  # YADE's are those of a step earlier: some have parted by now
+    shared = before.keys() & after.keys()  # YADE's contacts are those of a step earlier, some of which have ended
     assert len(shared) > 20 and max(np.abs(before[key]).max() for key in shared) > 1e-4
     assert all((before[key] == after[key]).all() for key in shared)
 
@@ -105,7 +107,7 @@ def test_the_way_back_goes_on_as_yades_loop():
 
 
 def test_a_clump_in_space_keeps_its_turn_on_both_ways():
-    """Euler's equations by two integrators whose error is of the order of the time step, 1e-4 of a turn of 1 rad."""
+    """Euler's equations by two integrators whose error is of the order of the time step, 1e-4 of a rotation by 1 rad."""
     after = []
     for exchanged in (False, True):
         disks.new_scene(dt=1e-4)
@@ -118,7 +120,7 @@ def test_a_clump_in_space_keeps_its_turn_on_both_ways():
             disks.run(2000)
         after.append(state())
     assert np.abs(after[0] - after[1]).max() < 1e-3
-    assert np.abs(after[0][-1, 6:] - (1, 2, -1)).max() > 0.05  # it tumbles
+    assert np.abs(after[0][-1, 6:] - (1, 2, -1)).max() > 0.05  # the clump tumbles
 
 
 def test_changed_settings_go_back_too():

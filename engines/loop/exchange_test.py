@@ -1,4 +1,4 @@
-"""The exchange of engines: their order both ways, the scene that an exchange belongs to, and labels of what is gone."""
+"""The exchange of engines: their order in both directions, the scene of an exchange, and labels of removed engines."""
 
 import builtins
 
@@ -24,7 +24,7 @@ def runner(label, command="pass"):
 
 
 def put(engine, place):
-    """Place 0 to 4: before ForceResetter, collider, contacts, integrator, or behind all."""
+    """Position 0 to 4: before ForceResetter, collider, contacts, integrator, or behind all."""
     O.engines = O.engines[:place] + [engine] + O.engines[place:]
 
 
@@ -69,7 +69,7 @@ def test_engines_that_were_moved_or_added_stay_on_their_side():
 
 @pytest.mark.parametrize("place", [3, 4], ids=["before", "behind"])
 def test_a_runner_records_the_state_on_its_side_of_the_step(place):
-    """Free fall from rest: v = -g dt times the steps done, which a runner behind the integrator sees one step earlier."""
+    """Free fall from rest: v = -g dt times the steps made; a runner behind the integrator reads it one step earlier."""
     seen = []
     for loop in ("yade", "grain"):
         scene()
@@ -100,7 +100,7 @@ PUSHES = {
 @pytest.mark.parametrize("kind", PUSHES)
 @pytest.mark.parametrize("place", [0, 4], ids=["before", "behind"])
 def test_forces_that_yade_erases_are_refused(kind, place):
-    """On YADE's loop they act in no step, or in the first alone; where they act, in all."""
+    """At these places forces act in no step or only in the first on YADE's loop; before the integrator (3) they act in all."""
 
     def change(at):
         disks.new_scene(dt=1e-3)

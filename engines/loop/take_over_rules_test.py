@@ -1,4 +1,4 @@
-"""What YADE's engines can carry and GrainLoop cannot: each rule refuses by name, and nothing is changed."""
+"""Scenes that YADE's engines support and GrainLoop does not: each rule refuses by name, and the scene stays unchanged."""
 
 import disks
 import pytest
@@ -15,7 +15,7 @@ def pair():
     disks.loop(disks.hertz(gamma_n=50, gamma_t=50), friction=0.3)
 
 
-# One obstacle for each rule, by the rule's name: how it comes into the scene, and what is said of it.
+# One obstacle for each rule, by the rule's name: the change of the scene, and a part of the message.
 OBSTACLES = {
     "dead": (lambda: setattr(disks.engine("contacts"), "dead", True), "InteractionLoop.dead is True"),
     "newton_mask": (lambda: setattr(disks.engine("newton"), "mask", 2), "NewtonIntegrator.mask=2 leaves out body 0"),

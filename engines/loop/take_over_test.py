@@ -129,7 +129,7 @@ def test_the_frictional_springs_of_present_contacts_go_along():
     def build():
         disks.new_scene(dt=1e-4)
         disks.disk(0, 0, frozen=True)
-        disks.disk(0.9982, 0.0, velocity=(0, 0.2))  # pressed on by its weight
+        disks.disk(0.9982, 0.0, velocity=(0, 0.2))  # pressed on the base by its weight
         disks.loop(disks.hertz(gamma_n=50, gamma_t=50), friction=0.5, gravity=(-10, 0))
 
     build()
@@ -143,7 +143,7 @@ def test_the_frictional_springs_of_present_contacts_go_along():
     disks.run(100)
     np.testing.assert_allclose(disks.everything()[:, 0:6], expected[:, 0:6], rtol=0, atol=1e-12)
     slip = next(iter(O.interactions)).phys.slip
-    assert abs(slip[1]) > 1e-4  # of some weight
+    assert abs(slip[1]) > 1e-4  # a force of the order of the weight
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Walls and the energy ledger as Python sees them: attributes, checks, saving, and a compression from a script."""
+"""Walls and the energy ledger in Python: attributes, checks, saving, and a compression from a script."""
 
 import disks
 import numpy as np
@@ -9,14 +9,14 @@ from yade import O
 
 
 def bed(**settings):
-    """Return the GrainLoop of 20 x 25 disks apart from each other, periodic in x, on a floor that is no wall yet."""
+    """Return the GrainLoop of 20 x 25 disks apart from each other, periodic in x, above a floor that is not a wall yet."""
     disks.new_scene(period=(25, 60, 5))
     rng = np.random.default_rng(3)
     for row in range(20):
         for column in range(25):
             disks.disk(column + 0.5, 1.1 * row + 0.6, rng.uniform(0.45, 0.5), velocity=rng.uniform(-0.1, 0.1, 2))
     disks.loop(disks.hertz(gamma_n=500, gamma_t=500), friction=0.3)
-    return grain_loop.use_grain_loop(periods=(O.cell.size[0], 0), **settings)  # walls stand across y
+    return grain_loop.use_grain_loop(periods=(O.cell.size[0], 0), **settings)  # walls are across y
 
 
 def test_a_bed_is_compressed_to_an_area_fraction():
@@ -36,7 +36,7 @@ def test_a_bed_is_compressed_to_a_pressure():
     loop.setWall("y_low", position=0)
     loop.setWall("y_high", position=22.2, pressure=5, mass=20, damping=200, speedLimit=2)
     disks.run(200000)
-    for side in ("y_low", "y_high"):  # after 20 s the bed still swings by less than a hundredth
+    for side in ("y_low", "y_high"):  # after 20 s the bed still oscillates, by less than a hundredth
         assert loop.walls[side]["measuredPressure"] == pytest.approx(5, rel=1e-2)
     contacts = loop.wallContacts()
     on_floor = np.array(contacts["side"]) == "y_low"
@@ -105,11 +105,11 @@ def test_the_ledger_closes_with_drives_and_knows_their_work():
     loop = grain_loop.use_grain_loop(trackEnergy=True)
     disks.run(5000)
     entries = loop.energy
-    # Sums of 5000 steps, each rounded to 1e-16.
+    # Sums of 5000 steps, each with a round-off of 1e-16.
     assert entries["closure"] < 1e-12
     assert entries["friction"] > 0 and entries["normalDamping"] > 0
     clump = next(b.id for b in O.bodies if b.isClump)
-    # The drive counts whole steps, the ledger to the step itself: half a step's power apart.
+    # The drive sums work over whole steps, the ledger up to the present time: the difference is the work of half a step.
     assert entries["workByBody"][clump] == pytest.approx(disks.engine("shake").work, rel=1e-2, abs=1e-3)
 
 

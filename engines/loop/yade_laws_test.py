@@ -94,7 +94,7 @@ def moving_parts():
     return np.array([[*b.state.pos, *b.state.vel, b.state.angVel[2]] for b in O.bodies])
 
 
-# Equal and unequal disks; what they do while they touch.
+# Impacts of equal and unequal disks.
 IMPACTS = {
     "sticking": dict(radii=(0.5, 0.5), velocities=((1, 0.05), (-1, -0.05)), spins=(0.1, 0.1)),
     "oblique": dict(radii=(0.5, 0.5), velocities=((1, 2), (-1, -1)), spins=(3, -1)),
@@ -107,7 +107,7 @@ IMPACTS = {
 
 def impact(law, radii, velocities, spins, frozen=None, damping=0.0):
     new_scene(**PAIR)
-    reach = sum(radii) + 1.3e-5  # a little apart: YADE and GrainLoop need not agree on what touches at 1e-16
+    reach = sum(radii) + 1.3e-5  # a small gap, because within round-off YADE and GrainLoop may disagree on what touches
     for k in range(2):
         at = (0, 0) if k == 0 else (reach * math.cos(0.3), reach * math.sin(0.3))
         held = k == frozen
@@ -116,7 +116,7 @@ def impact(law, radii, velocities, spins, frozen=None, damping=0.0):
 
 
 def contact_steps(law, **case):
-    """How many steps the impact lasts."""
+    """The number of steps of the impact."""
     impact(law, **case)
     for step in range(1, 2000):
         O.step()
@@ -137,7 +137,7 @@ def test_an_impact_is_yades_to_round_off_where_yade_turns_forces_exactly(law, ca
     impact(law, **IMPACTS[case], frozen=frozen)
     grain_loop.use_grain_loop()
     disks.run(steps)
-    # Overlaps of 1e-3 are differences of numbers of 1, so forces are known to 1e-13 of themselves; velocities are about 10.
+    # Overlaps of 1e-3 are differences of numbers of order 1, so forces have a relative error of 1e-13; velocities are about 10.
     np.testing.assert_allclose(moving_parts(), expected, rtol=0, atol=1e-12)
 
 
@@ -159,7 +159,7 @@ def test_plain_yade_is_off_by_its_first_order_turning(law):
     coarse = difference_from_plain_yade(law, "oblique", PAIR["dt"], steps)
     fine = difference_from_plain_yade(law, "oblique", PAIR["dt"] / 4, 4 * steps)
     # A step turns the contact by s = v_t dt/r <= 3 * 2e-5 and lengthens the force by s^2/2 < 2e-9: over 500 steps 1e-6 of a
-    # velocity of about 1. Four times as many steps that add a sixteenth each leave a quarter.
+    # velocity of about 1. With four times as many steps, each adding a sixteenth, the error is a quarter.
     assert 1e-9 < coarse < 1e-6
     assert coarse / fine == pytest.approx(4, rel=0.05)
 
@@ -174,7 +174,7 @@ def test_damping_of_a_spinning_impact_is_yades(law):
     impact(law, **case, damping=0.3)
     grain_loop.use_grain_loop()
     disks.run(steps)
-    np.testing.assert_allclose(moving_parts(), expected, rtol=0, atol=1e-12)  # as without damping
+    np.testing.assert_allclose(moving_parts(), expected, rtol=0, atol=1e-12)  # the same as without damping
 
 
 @pytest.mark.parametrize("damps_gravity", [True, False])
@@ -200,7 +200,7 @@ BED_STEPS = 600
 
 
 def bed(law, damping=0.2, **newton):
-    """Spheres pressed together in a trough of frozen ones, that jump apart and settle, and a clump of two in their midst."""
+    """Spheres pressed together in a trough of frozen ones, which jump apart and settle, with a clump of two among them."""
     new_scene(young=2e5, dt=1e-4)
     rng = np.random.default_rng(8)
     for row in range(17):
@@ -241,7 +241,7 @@ def test_a_damped_bed_with_a_clump_is_yades_to_round_off_where_yade_turns_forces
     bed(law)
     grain_loop.use_grain_loop()
     disks.run(400)
-    # Forces are known to 1e-13 (see impacts); 400 steps of a crowd without dashpots make 1e-10 of it, with dashpots less.
+    # Forces have errors of 1e-13 (see impacts), which grow to 1e-10 in 400 steps without dashpots, and less with them.
     np.testing.assert_allclose(moving_parts(), expected, rtol=0, atol=1e-9)
 
 
@@ -290,7 +290,7 @@ def test_contacts_tell_yades_forces(law):
         np.testing.assert_allclose(found, forces[:5], rtol=0, atol=1e-2)
         np.testing.assert_allclose(
             table["point"][k][:2], forces[5:], rtol=0, atol=1e-3
-        )  # a step's way, and a disk's radius 0.45
+        )  # the displacement in a step; the disk's radius is 0.45
         assert bool(table["slipping"][k]) == slipping
         seen += 1
     assert seen == len(expected) > 150
@@ -348,7 +348,7 @@ def test_every_processors_kernel_computes_the_same(law, monkeypatch):
         seen.append(moving_parts())
     np.testing.assert_allclose(
         seen[0], seen[1], rtol=0, atol=1e-9
-    )  # fused products round otherwise; growth as of ROUND_OFF elsewhere
+    )  # fused multiply-adds have other round-off; it grows as that of ROUND_OFF elsewhere
 
 
 def test_single_precision_stays_near_double():
@@ -402,7 +402,7 @@ def test_damping_ratios_are_made_as_yade_makes_them(given, ratios):
 def test_constants_come_from_the_bodies_materials():
     new_scene(young=3e5, angle=0.3)
     sphere(0, 0), sphere(5, 0)
-    O.materials.append(FrictMat(young=1e9, frictionAngle=1.2))  # no body has it
+    O.materials.append(FrictMat(young=1e9, frictionAngle=1.2))  # no body has this material
     engines_of("cundallStrack", damping=0.4, dampGravity=False)
     functors = O.engines[2].geomDispatcher.functors
     O.engines[2].geomDispatcher.functors = [

@@ -1,4 +1,4 @@
-"""The torque that ContactForceBinner sums is the one that YADE's loop integrates, wherever the law lets friction act."""
+"""The torque that ContactForceBinner sums is the one that YADE's loop integrates, for laws with either lever of friction."""
 
 import builtins
 import math
@@ -46,7 +46,7 @@ def scene():
 
 
 def rubbed_disk():
-    """A spinning disk among others that overlap it deeply; their ids follow its own, so that it is body 1 and 2 of pairs."""
+    """A spinning disk among others that overlap it deeply, with smaller and larger ids, so that it is body 1 or 2 of pairs."""
     for angle in (0.4, 2.0):
         disks.disk(0.8 * math.cos(angle), 0.8 * math.sin(angle), 0.4)
     body = disks.disk(0, 0, spin=3)
@@ -76,7 +76,7 @@ def in_the_container(body):
 def test_the_torque_of_the_contacts_is_what_the_loop_integrates(law, build, monkeypatch):
     body, (maker, law), seen = build(), LAWS[law](), []
     binner = engines.ContactForceBinner(body=body)
-    drive = engines.SpinTranslateDrive(body=body, dofs="")  # it drives nothing, and reports
+    drive = engines.SpinTranslateDrive(body=body, dofs="")  # it prescribes no motion, and only reports
 
     def look():
         scale = np.abs(binner.forceVectors).sum()

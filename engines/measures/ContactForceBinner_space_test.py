@@ -35,7 +35,7 @@ def frame_at(angle, latitude):
 
 
 def touch(angle, latitude=0.0, east=0.0, north=0.0, centre=CENTRE):
-    """A sphere that touches the one at `centre` and moves over it, along the growing angle and along the meridian [m/s]."""
+    """A sphere that touches the one at `centre` and moves along its surface, with growing angle and along the meridian [m/s]."""
     normal, along, meridian = frame_at(angle, latitude)
     return frozen(centre + (RADIUS + OTHER - OVERLAP) * normal, OTHER, east * along + north * meridian)
 
@@ -63,7 +63,7 @@ def test_one_contact_stands_at_its_angle_about_the_axis(angle, latitude):
     at = int((angle + math.pi) / (math.pi / 12))
     alone = np.eye(24)[at]
     np.testing.assert_array_equal(binner.contacts, alone)
-    small = 1e-12 * NORMAL  # the overlap is a difference of places of order 4: 1e-14 of itself
+    small = 1e-12 * NORMAL  # the overlap is a difference of positions of order 4: a relative error of 1e-14
     np.testing.assert_allclose(binner.normalForce, alone * NORMAL * math.cos(latitude), rtol=0, atol=small)
     np.testing.assert_allclose(binner.axialForce, alone * NORMAL * math.sin(latitude), rtol=0, atol=small)
     np.testing.assert_allclose(binner.tangentialForce, 0, atol=small)
@@ -75,18 +75,18 @@ def test_one_contact_stands_at_its_angle_about_the_axis(angle, latitude):
     "latitude, east, north", [(0, 1, 0), (0, -3, 4), (0, 0, -1), (0.7, 1, 0), (0.7, 0, 1), (-0.4, -3, 4)]
 )
 def test_friction_counts_in_the_plane_with_its_sign_and_along_the_axis(latitude, east, north, sense):
-    """The partner drags the body's surface: mu F_n along its velocity, of which the part along the angle is tangential."""
+    """The partner's friction on the body is mu F_n along its velocity; the part along the angle is the tangential force."""
     angle = 0.4
     body = frozen(CENTRE)
     touch(angle, latitude, east, north)
-    law = hertz(k_t=1e-9, gamma_t=1e9)  # slips at once, along the velocity
+    law = hertz(k_t=1e-9, gamma_t=1e9)  # the contact slips at once, along the velocity
     binner = engines.ContactForceBinner(body=body, planeNormal=(0, sense, 0), direction=(1, 0, 0))
     loop(law, friction=FRICTION, before_newton=[binner])
     run(1)
     assert binner.slippingNumber == 1
     friction, speed = FRICTION * NORMAL, math.hypot(east, north)
     at = int((-sense * angle + math.pi) / (math.pi / 12))
-    small = 1e-9 * NORMAL  # in a step of 1e-6 nothing moves by more than 4e-6 of the overlap of 0.02, after the sample
+    small = 1e-9 * NORMAL  # after the sample, in a step of 1e-6, displacements are at most 4e-6; the overlap is 0.02
     assert binner.tangentialForce[at] == pytest.approx(-sense * friction * east / speed, abs=small)
     along_axis = -NORMAL * math.sin(latitude) + friction * north / speed * math.cos(latitude)
     assert binner.axialForce[at] == pytest.approx(sense * along_axis, abs=small)
@@ -117,7 +117,7 @@ def test_gaussian_weights_about_the_axis_sum_to_one():
 
 
 def test_a_row_of_beads_is_a_cylinder():
-    """Beads along y, touched and rubbed at several places: angles are those about the row, and sums are YADE's own."""
+    """A row of beads along y with normal and tangential contacts: angles are those about the row, and sums are YADE's own."""
     places = [(-0.6, 0.35), (0.0, -2.0), (0.6, 1.2)]
     row, members = clump([(0, y, 0) for y, _ in places], at=CENTRE, radius=RADIUS)
     for y, angle in places:

@@ -1,4 +1,4 @@
-"""ContactForceBinner: what stands in which bin, that the sums are the body's force, and that the statistics are NumPy's."""
+"""ContactForceBinner: which contacts count in which bins, sums against the body's force, and statistics against NumPy."""
 
 import math
 
@@ -61,7 +61,7 @@ def test_one_contact_stands_in_its_bin(angle):
     alone = np.zeros(24)
     alone[bin_] = 1
     np.testing.assert_array_equal(binner.contacts, alone)
-    # The depth is a difference of numbers of order 2 whose value is 0.02: 1e-14 of itself.
+    # The overlap, 0.02, is a difference of numbers of order 2: a relative error of 1e-14.
     np.testing.assert_allclose(binner.normalForce, alone * expected_normal(), rtol=1e-13)
     np.testing.assert_array_equal(binner.tangentialForce, 0)
     np.testing.assert_array_equal(binner.slippingContacts, 0)
@@ -82,7 +82,7 @@ def test_gaussian_weights_are_those_of_guillard_and_sum_to_one(angle):
     away = (binner.angles - angle + math.pi) % (2 * math.pi) - math.pi
     weights = math.sqrt(2 * math.pi) / (64 * zeta) * np.exp(-(away**2) / (2 * zeta**2))
     np.testing.assert_allclose(binner.contacts, weights, rtol=0, atol=64 * EPS)
-    # 2 exp(-M^2 zeta^2/2) = 4e-18 is what the points leave out, the rest is the round-off of 64 additions.
+    # The sum over points differs from the integral by 2 exp(-M^2 zeta^2/2) = 4e-18; the rest is the round-off of 64 additions.
     assert binner.contacts.sum() == pytest.approx(1, abs=64 * EPS)
     np.testing.assert_allclose(binner.normalForce, weights * expected_normal(), rtol=0, atol=64 * EPS * 400)
 
@@ -94,7 +94,7 @@ def test_gaussian_weights_sum_to_one_for_other_choices(count, width):
         touch((0, 0), angle, other=0.2, overlap=0.01)
     binner = binner_on(body, kernel="gaussian", count=count, width=width)
     measured(binner)
-    # Poisson summation: the points miss 2 exp(-M^2 zeta^2/2) of each contact, beside round-off.
+    # By Poisson summation the sum over points differs by 2 exp(-M^2 zeta^2/2) for each contact, apart from round-off.
     missing = 2 * math.exp(-((count * width) ** 2) / 2)
     assert binner.contacts.sum() == pytest.approx(5, abs=5 * (missing + count * EPS))
 
@@ -143,7 +143,7 @@ def test_the_other_body_of_the_pair_sees_the_opposite_force():
 
 @pytest.mark.parametrize("friction, slips", [(0.0, 1), (1e-3, 1), (100.0, 0)])
 def test_slipping_and_the_sign_of_the_tangential_force(friction, slips):
-    # A wall disk at the right moves up: it drags the body's surface counter-clockwise.
+    # A wall disk on the right moves up, so its friction on the body acts counter-clockwise.
     body = disk(0, 0, frozen=True)
     wall = touch((0, 0), 0.1)
     O.bodies[wall].state.vel = (0, 1.0, 0)
@@ -170,7 +170,7 @@ def test_normal_forces_on_the_body_are_all_of_the_force_without_friction_and_acr
     for friction in (0.0, 0.5):
         body = disk(0, 0, frozen=True)
         wall = disk(0.9, 0, frozen=True)
-        O.bodies[wall].state.vel = (0, 0.3, 0)  # slides along the contact, so only friction acts along y
+        O.bodies[wall].state.vel = (0, 0.3, 0)  # slides along y, so only friction acts along y
         binner = binner_on(body)
         measured(binner, friction=friction, law=hertz(leverArm="contactPoint"), steps=1)
         normal, force = np.array(binner.normalForceOnBody), np.array(binner.force)
@@ -209,7 +209,7 @@ def test_forces_on_a_clump_are_those_on_its_members(kernel):
     binner = binner_on(ident, kernel=kernel)
     measured(binner, friction=0.4, law=hertz(gamma_n=250, gamma_t=250, leverArm="contactPoint"), steps=3)
     assert binner.lastContactNumber >= 3
-    # Just before the integrator; it adds the members' forces to the clump itself, which O.forces.f of a member does not have.
+    # Reads forces just before the integrator, which adds the members' forces to the clump.
     force, torque = container_force(members, np.array(O.bodies[ident].state.pos))
     scale = np.abs(binner.forceVectors).sum()
     np.testing.assert_allclose(binner.lastForce, force, rtol=0, atol=64 * EPS * scale)
@@ -242,7 +242,7 @@ def test_in_a_moving_bed_sums_hold_at_every_step():
 
 
 def recorded(binner, steps):
-    """Run step by step and keep the sample of each: a fresh binner beside it sees one step at a time."""
+    """Run step by step and keep the sample of each, from a second binner that is reset at every step."""
     rows = []
     fresh = engines.ContactForceBinner(body=binner.body, kernel=binner.kernel)
     O.engines = O.engines[:-1] + [fresh] + O.engines[-1:]
@@ -273,7 +273,7 @@ def test_means_and_variances_are_those_of_numpy(kernel):
     variances = np.concatenate(variances + [[binner.contactNumberVariance]])
     scale = np.abs(rows).max(axis=0)
     assert (rows.std(axis=0) > 0).sum() > 10
-    # 400 additions, each rounded to EPS of the largest value.
+    # 400 additions, each with a round-off of EPS of the largest value.
     assert np.all(np.abs(means - rows.mean(axis=0)) <= 400 * EPS * scale)
     assert np.all(np.abs(variances - rows.var(axis=0, ddof=1)) <= 400 * 4 * EPS * scale**2)
 

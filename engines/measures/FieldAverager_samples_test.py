@@ -27,7 +27,7 @@ def test_samples_go_to_their_phase():
     fields = averager(kernel="diskBin", spacing=6, phases=phases, period=period, phaseStart=0.005)
     loop(before_newton=[fields])
     for step in range(steps):
-        # The velocity tells the time of the sample.
+        # The velocity shows the time of the sample.
         O.bodies[body].state.vel = (1e-9 * step, 0, 0)
         O.step()
     assert fields.samples.tolist() == [250] * 4
@@ -97,7 +97,7 @@ def test_a_settled_bed_carries_the_weight_above():
     run(100)
     weight = np.array([O.bodies[i].state.mass for i in grains])
     height = np.array([O.bodies[i].state.pos[1] for i in grains])
-    # The field at y is a mean over exp(-(y - y')^2/w^2): so is the weight above.
+    # The field at y is a mean with the weight exp(-(y - y')^2/w^2); the same mean is taken of the weight above.
     above = [(weight * [0.5 + 0.5 * math.erf(h - y) for h in height]).sum() / width for y in fields.y]
     sideways = fields.totalStress[0, :, :, 1, 1].mean(axis=1)
     np.testing.assert_allclose(sideways, above, rtol=0.02)
@@ -150,7 +150,7 @@ def test_a_fixed_origin_may_be_moved_while_it_averages():
         fields.origin = (0.1 * step, 0, 0)
         run(1)
     assert fields.samples.tolist() == [10]
-    # The grain stands still in this window: as many bins as one frame has, each as full.
+    # The grain is at rest in this window: it fills the same bins, by the same amounts, as in one frame.
     assert (fields.areaFraction * fields.x).sum() / fields.areaFraction.sum() == pytest.approx(1, abs=1e-12)
     assert fields.areaFraction.max() == pytest.approx(1, abs=1e-12)
 
@@ -203,7 +203,9 @@ def test_no_stress_no_pressure():
     assert fields.areaFraction.max() > 0 and fields.stress is False
     fields.stress = True
     run(1)
-    assert fields.pressure.shape == (1, 24, 24) and fields.samples.tolist() == [1]  # what is summed has changed
+    assert fields.pressure.shape == (1, 24, 24) and fields.samples.tolist() == [
+        1
+    ]  # the settings of the sums have changed
 
 
 def test_a_body_that_does_not_exist_stops_the_run():

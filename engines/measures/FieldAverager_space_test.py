@@ -1,4 +1,4 @@
-"""FieldAverager in three dimensions on YADE's loop: what is a grain, axes and names, a bed at rest, windows, bad input."""
+"""FieldAverager in three dimensions on YADE's loop: which bodies count, axes and names, a bed at rest, windows, bad input."""
 
 import math
 
@@ -8,8 +8,8 @@ from disks import disk, engine, engines, hertz, new_scene, run
 from spheres import clump, frozen, loop, sphere
 from yade import O, utils
 
-LENGTH = 4.0  # of the periodic crowd
-SMOOTH = dict(kernel="gaussian", width=0.5, cutoff=5)  # on points w/2.5 apart sums miss exp(-25) of integrals
+LENGTH = 4.0  # edge of the periodic box
+SMOOTH = dict(kernel="gaussian", width=0.5, cutoff=5)  # on points w/2.5 apart sums differ from integrals by exp(-25)
 FIELDS = "solidFraction density velocity temperature contactStress kineticStress totalStress pressure".split()
 CUBE = dict(low=(-2, -2, -2), high=(2, 2, 2), spacing=0.2)
 
@@ -50,7 +50,7 @@ def fields_of(measure):
 def test_the_window_holds_the_volume_and_the_mass_of_its_free_spheres(along):
     fields = averager(averageAlong=along)
     free = crowd(fields)
-    O.bodies[free[5]].state.pos += (3 * LENGTH, -2 * LENGTH, LENGTH)  # another winding of the same place
+    O.bodies[free[5]].state.pos += (3 * LENGTH, -2 * LENGTH, LENGTH)  # another image of the same place
     clump([(0, 0, 0), (0.1, 0, 0)], at=(1, 1, 3))
     run(1)
     assert len(free) == 64 - 16 - 1
@@ -66,7 +66,7 @@ def test_a_free_sphere_is_left_out_of_its_own_fields():
     loop(before_newton=[averager(body=ids[0], high=(2, 4, 2)), averager("fixed", high=(2, 4, 2))])
     run(1)
     own, fixed = (engine(name).solidFraction.sum() * 0.2**3 for name in ("fields", "fixed"))
-    # The outer sphere is 2 from the window's sides, 4 w: erfc(4) lies beyond each.
+    # The outer sphere is 2 = 4 w from the window's sides: a part erfc(4) is beyond each.
     assert own == pytest.approx(math.pi / 6, rel=1e-7) and fixed == pytest.approx(2 * math.pi / 6, rel=1e-7)
 
 
@@ -158,7 +158,7 @@ def test_pressure_and_total_are_made_of_both_stresses():
     np.testing.assert_allclose(fields.pressure, np.trace(both, axis1=-2, axis2=-1) / 3, rtol=1e-15)
     assert fields.pressure.min() > 0
     np.testing.assert_array_equal(fields.kineticStress, np.swapaxes(fields.kineticStress, -1, -2))
-    # One temperature for all where all grains have one mass density: tr sigma_k = 3 rho T. Here densities differ by up to two.
+    # tr sigma_k = 3 rho T holds if all grains have one density and temperature. Here densities differ by up to a factor of two.
     ratio = np.trace(fields.kineticStress, axis1=-2, axis2=-1) / (3 * fields.density * fields.temperature)
     assert 0.5 < ratio.min() and ratio.max() < 2
 
@@ -169,7 +169,7 @@ def test_a_window_over_the_periodic_sides_sees_the_other_sides(kernel):
         new_scene(period=(8, 8, 8))
         for x, y, z in ((0.3, 0.2, 0.1), (1.2, 0.3, 0.2), (0.8, 1.1, -0.5), (-1.1, -0.7, 0.4), (-0.6, -0.7, -0.4)):
             sphere([(p + shift) % 8 for p in (x, y, z)], velocity=(x, y, z))
-        loop(before_newton=[averager(kernel=kernel, origin=(shift,) * 3, cutoff=4.03)])  # no point just on the cut
+        loop(before_newton=[averager(kernel=kernel, origin=(shift,) * 3, cutoff=4.03)])  # no point exactly at the cut
         run(1)
         return fields_of(engine("fields"))
 
@@ -223,7 +223,7 @@ def test_a_settled_bed_carries_the_weight_above():
     def above(z, share_above):
         return (weight * [share_above(h - z) for h in height]).sum() / (length * width)
 
-    # The mean over a plane of exp(-r^2/w^2) and of a sphere leaves kernels of the height alone, integrated from below.
+    # Averaged over a plane, exp(-r^2/w^2) and a sphere become kernels of the height only, which are integrated from below.
     gaussian = [above(z, lambda h: 0.5 + 0.5 * math.erf(h)) for z in measures[0].z]
     cap = [above(z, lambda h: (2 + 3 * np.clip(h, -1, 1) - np.clip(h, -1, 1) ** 3) / 4) for z in measures[0].z]
     row, full, spheres = (m.contactStress[0, ..., 2, 2] for m in measures)

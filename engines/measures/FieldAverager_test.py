@@ -1,4 +1,4 @@
-"""FieldAverager: the same fields on both loops, what counts as a grain, moving windows, periodic images."""
+"""FieldAverager: the same fields on both loops, which bodies count as grains, moving windows, periodic images."""
 
 import math
 
@@ -61,7 +61,7 @@ def test_threads_and_precision_of_the_loop(threads, precision):
 
     expected, found = seen(), seen(threads=threads, precision=precision)
     for name in FIELDS:
-        tolerance = 1e-12 if precision == "double" else 1e-4  # forces in float: 1e-7 over overlaps of 0.02
+        tolerance = 1e-12 if precision == "double" else 1e-4  # forces in single precision: 1e-7 over overlaps of 0.02
         scale = np.nanmax(np.abs(expected[name]))
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=tolerance * scale, err_msg=name)
 
@@ -71,7 +71,7 @@ def test_threads_and_precision_of_the_loop(threads, precision):
 
 def test_the_window_holds_the_mass_of_its_free_grains():
     crowd(low=(0, 0, 0), high=(LENGTH, LENGTH, 0), kernel="diskBin", spacing=0.1)
-    O.bodies[17].state.pos += (3 * LENGTH, -2 * LENGTH, 0)  # another winding of the same place
+    O.bodies[17].state.pos += (3 * LENGTH, -2 * LENGTH, 0)  # another image of the same place
     free = [b for b in O.bodies if b.state.blockedDOFs == "zXY" and not b.isClump and not b.isClumpMember]
     assert len(free) == 81 - 2 - 9 - 1
     area, mass = sum(math.pi * b.shape.radius**2 for b in free), sum(b.state.mass for b in free)
@@ -166,7 +166,7 @@ def test_the_window_goes_with_its_body_and_its_velocity(loops):
     run(200)
     fields = engine("fields")
     row, column = np.argwhere(np.isclose(fields.y, 0.375))[0, 0], np.argwhere(np.isclose(fields.x, 1.375))[0, 0]
-    # 200 steps of 1e-4 at a relative velocity of (0, 2): 0.02 of the way up on average.
+    # 200 steps of 1e-4 at a relative velocity of (0, 2): 0.02 further up on average.
     np.testing.assert_allclose(fields.velocity[0, row, column], (0, 2), atol=1e-12)
     np.testing.assert_allclose(engine("still").velocity[0, row, column], (3, 1), atol=1e-12)
     moment = (fields.areaFraction[0] * fields.x).sum() / fields.areaFraction[0].sum()

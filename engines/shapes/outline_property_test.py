@@ -1,4 +1,4 @@
-"""Outlines as files hold them, rounded, littered, turned, far away: the beads and the solid of the clean polygon."""
+"""Outlines as in files (rounded, superfluous vertices, rotated, far away) give the beads and the solid of the exact polygon."""
 
 import math
 from fractions import Fraction
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 BEAD = 0.5
-TOUCH = 1e-5  # of a bead's radius: what clump_of promises
+TOUCH = 1e-5  # over a bead's radius: the tolerance of clump_of
 
 
 def distances(corners, points):
@@ -32,7 +32,7 @@ def is_inside(corners, points):
 
 
 def exact_solid(corners):
-    """Return centroid (2,) and I/m about it of a polygon of doubles, in exact fractions."""
+    """Return centroid (2,) and I/m about it of a polygon, computed in exact fractions."""
     v = [(Fraction(float(x)), Fraction(float(y))) for x, y in corners]
     area = first_x = first_y = polar = Fraction(0)
     for (ax, ay), (bx, by) in zip(v, v[1:] + v[:1]):
@@ -53,7 +53,7 @@ def polygons(draw):
     places = draw(st.lists(st.floats(0, 0.6), min_size=count, max_size=count))
     turn = draw(st.floats(0, 2 * math.pi))
     angles = turn + 2 * math.pi * (np.arange(count) + np.array(places)) / count
-    assume(np.diff(angles, append=angles[0] + 2 * math.pi).max() < 3)  # else (0, 0) need not be inside
+    assume(np.diff(angles, append=angles[0] + 2 * math.pi).max() < 3)  # otherwise (0, 0) may be outside
     return np.array(radii)[:, None] * np.c_[np.cos(angles), np.sin(angles)]
 
 
@@ -88,7 +88,7 @@ def beads_or_none(vertices):
 @given(st.data())
 def test_beads_touch_from_inside_and_are_those_of_the_clean_polygon(data):
     corners = data.draw(polygons())
-    assume(np.abs(turns(corners)).min() > 0.15)  # rounding must not decide whether a corner counts as one
+    assume(np.abs(turns(corners)).min() > 0.15)  # rounding must not decide whether a vertex counts as a corner
     digits = data.draw(st.integers(6, 9))
     shift = np.array([data.draw(st.sampled_from([0, 1, -1])) * data.draw(st.floats(0, 1e7)) for _ in range(2)])
     vertices = data.draw(littered(corners, digits, shift))
@@ -118,7 +118,7 @@ def test_centroid_and_inertia_are_exact_far_away_too(data):
     own = outline.about_centroid.vertices
     lowest = min(range(len(vertices)), key=lambda i: (vertices[i][1], vertices[i][0]))
     exact = [float(Fraction(float(c)) - mean) for c, mean in zip(vertices[lowest], (x, y))]
-    assert np.hypot(*(own - exact).T).min() < 1e-11  # all digits of the differences are kept
+    assert np.hypot(*(own - exact).T).min() < 1e-11  # the differences keep all digits
 
 
 @settings(max_examples=60, deadline=None)

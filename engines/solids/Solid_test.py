@@ -30,7 +30,7 @@ from yade.wrapper import (
 EPS = np.finfo(float).eps
 R, YOUNG, NU, G = 0.01, 1e7, 0.3, 9.81
 E_EFF = YOUNG / (2 * (1 - NU**2))
-K = 4 / 3 * E_EFF * math.sqrt(R)  # of a sphere against what counts as flat
+K = 4 / 3 * E_EFF * math.sqrt(R)  # effective radius of a sphere at a solid, which counts as flat
 MASS = 2500 * 4 / 3 * math.pi * R**3
 FLOOR = surfaces.half_space((0, 0, 0), (0, 0, 1))
 LAWS = {
@@ -149,7 +149,7 @@ def test_the_order_of_ids_does_not_matter():
     "free, blocked, spin, expected",
     [
         (False, "xyzXYZ", 0, 1),
-        (False, "xyzXYZ", 5, 1),  # driven: it turns, but does not recoil
+        (False, "xyzXYZ", 5, 1),  # driven: it rotates, but does not recoil
         (False, "xyz", 5, 1),  # on an axle
         (True, "", 0, 3 / 4),
     ],
@@ -202,12 +202,12 @@ def test_a_head_on_impact_is_the_integrated_equation(restitution):
     while ball.state.vel[2] < 0 or any(i.isReal for i in O.interactions):
         O.run(500, True)
     assert ball.state.vel[2] == pytest.approx(-end, rel=1e-3)
-    assert ball.state.vel[2] / 0.5 == pytest.approx(restitution, rel=5e-3)  # what the law is for
+    assert ball.state.vel[2] / 0.5 == pytest.approx(restitution, rel=5e-3)  # the law determines the restitution
     assert tuple(solid.state.vel) == (0, 0, 0) and tuple(solid.state.pos) == (0, 0, 0)
 
 
 def lever_scene(contact_law):
-    """A free solid whose surface lies beside its own centre, turned and spinning, hit by a spinning sphere."""
+    """A free solid whose surface is not about its centre of mass, rotated and spinning, hit by a spinning sphere."""
     surface = surfaces.ball((0.03, 0, 0), 0.01)
     keys = dict(position=(0.1, -0.2, 0.3), mass=0.05, inertia=(2e-5, 2e-5, 2e-5), held=False)
     solid = add_solid(surface, **keys)
@@ -235,7 +235,7 @@ def test_an_oblique_impact_on_a_free_solid_conserves_both_momenta(name):
         O.step()
         touched += any(i.isReal for i in O.interactions)
     assert 30 < touched < 500 and np.linalg.norm(np.array(ball.state.angVel) - spin) > 0.1  # there was friction
-    # 600 steps round momenta of 0.02 kg m/s, and of 0.01 kg m^2/s, by EPS
+    # 600 steps with a round-off of EPS in momenta of 0.02 kg m/s and 0.01 kg m^2/s
     np.testing.assert_allclose(momentum(), before, rtol=0, atol=600 * 0.02 * EPS)
     np.testing.assert_allclose(angular_momentum(), turning, rtol=0, atol=600 * 0.01 * EPS)
 
@@ -255,7 +255,7 @@ def test_force_and_torque_on_the_solid_balance_those_on_the_sphere(name, lever):
     assert np.linalg.norm(shear) > 1e-3 * size and overlap > 1e-4
     np.testing.assert_allclose(f1, -f2, rtol=0, atol=4 * EPS * size)
     np.testing.assert_allclose(O.forces.t(0), np.cross(c - x1, f1), rtol=0, atol=8 * EPS * size * 0.1)
-    # About c the sphere's torque is left over if its force acts at its radius: half an overlap beyond c.
+    # If the sphere's force acts at its radius, half an overlap beyond c, a torque about c remains.
     about_c = np.array(O.forces.t(1)) + np.cross(x2 - c, f2)
     left = np.cross(-overlap / 2 * n, shear) if lever == "radius" else 0
     np.testing.assert_allclose(about_c, left, rtol=0, atol=16 * EPS * size * 0.1)
@@ -291,7 +291,7 @@ def test_a_cylinder_that_spins_drags_a_sphere_that_rests_on_it(name):
     torque = np.array(O.forces.t(0))
     np.testing.assert_allclose(
         torque, (0, -0.5 * pressure * 0.05, 0), rtol=0, atol=3e-3 * abs(torque[1])
-    )  # brakes; R - delta/2
+    )  # friction brakes it; the lever is R - delta/2
     np.testing.assert_allclose(drum.state.ori.toAngleAxis()[0], 40 * 2 * O.dt, rtol=1e-9)
 
 
@@ -397,7 +397,7 @@ def test_bounds_hold_a_solid_however_it_turns():
     O.engines[1].verletDist = 0
     O.step()
     np.testing.assert_allclose([held.bound.min, held.bound.max], [(-1, -0.1, -0.1), (1, 0.1, 0.1)], atol=1e-12)
-    reach = math.sqrt(1 + 2 * 0.1**2)  # of the box's corners
+    reach = math.sqrt(1 + 2 * 0.1**2)  # distance of the box's corners
     for turning in (spinning, free):
         y = turning.state.pos[1]
         np.testing.assert_allclose(
@@ -443,7 +443,7 @@ def test_endless_solids_fit_a_periodic_cell_and_short_ones_have_images():
         O.run(3, True)
         depths = [i.geom.penetrationDepth for i in O.interactions if i.isReal]
         assert len(depths) == 100
-        np.testing.assert_allclose(depths, 0.1 * R, rtol=1e-5)  # they move by 1e-7 of it
+        np.testing.assert_allclose(depths, 0.1 * R, rtol=1e-5)  # spheres move by 1e-7 of it
 
 
 SORTED_AGAIN = """
@@ -490,7 +490,7 @@ print(O.engines[1].numAction, "sorts", found == sorted(near), len(near))
 
 @pytest.mark.parametrize("kind, least", [("cylinder", 5), ("plane", 20)])
 def test_an_endless_solid_in_a_periodic_cell_meets_what_comes_near_later(kind, least):
-    """In a process of its own: a collider that does not end cannot be stopped in this one; it takes a few seconds."""
+    """Runs in a separate process, because a collider that does not end cannot be stopped in this one; takes a few seconds."""
     code = [sys.executable, "-c", SORTED_AGAIN, kind]
     said = subprocess.run(code, capture_output=True, text=True, timeout=120, check=True).stdout.split("\n")[-2]
     sorts, _, right, number = said.split()
@@ -537,7 +537,7 @@ def test_what_goes_wrong_in_a_step_stops_the_run_and_is_raised():
     import builtins
 
     builtins.grow = lambda: setattr(O.bodies[0].shape, "recipe", "ball 0 0 0 0.4")
-    O.engines[1].verletDist = 0  # the collider looks at each step
+    O.engines[1].verletDist = 0  # the collider works at each step
     with pytest.raises(RuntimeError, match="no longer than half of the periodic cell"):
         O.run(100, True)
     assert O.iter < 20
@@ -545,7 +545,7 @@ def test_what_goes_wrong_in_a_step_stops_the_run_and_is_raised():
 
 
 def test_a_question_that_the_surface_refuses_is_raised():
-    # Distances below a plane, which reaches the grid's sides: nothing is known beyond them.
+    # Distances below a plane that reaches the grid's sides: beyond these the solid is unknown.
     values = " ".join(str(z / 10 - 0.15) for z in range(4) for _ in range(16))
     add_solid(surfaces.Surface("sampled 4 4 4 0 0 0 0.1 0.1 0.1 " + values))
     add_sphere((0.32, 0.1, 0.15 + R))
@@ -559,7 +559,7 @@ def test_a_question_that_the_surface_refuses_is_raised():
 
 
 def test_yades_own_laws_stand_on_a_solid():
-    # Its Mindlin law takes the solid for a sphere of radius refR1: half of R by default, as with its walls.
+    # YADE's Mindlin law treats the solid as a sphere of radius refR1: half of R by default, as for YADE's walls.
     for factor, radius in ((1, R / 2), (1e12, R)):
         new_scene()
         add_solid(FLOOR)
@@ -604,7 +604,7 @@ def test_our_laws_take_contacts_of_other_makers():
 
 
 def test_a_drive_measures_the_wrench_on_a_solid():
-    """By contacts it finds what YADE's force container holds."""
+    """The binner finds the force in YADE's force container from contacts."""
     solid, ball = lever_scene(LAWS["hertz_history"](leverArm="radius"))
     ball.state.pos = np.array(ball.state.pos) - 0.002 * np.array((1, 1, 1)) / math.sqrt(3)
     binner = engines.ContactForceBinner(body=0)

@@ -123,7 +123,7 @@ def test_a_torus_is_sampled_by_one_call():
     surface = surfaces.sampled(function, (-2, -2, -1), (2, 2, 1), 0.05)
     assert calls == [(81 * 81 * 41, 3)]
     near = POINTS[np.abs(torus(POINTS)) < 0.1]
-    # spacing^3 over the square of the least radius of curvature, 0.3 - 0.1 at these points
+    # spacing^3 over the square of the smallest radius of curvature, 0.3 - 0.1 at these points
     np.testing.assert_allclose(surface.distance(near), torus(near), rtol=0, atol=0.05**3 / 0.2**2)
 
 

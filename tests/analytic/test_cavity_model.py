@@ -36,7 +36,7 @@ def test_table_1_comes_out_cut_to_two_decimals(name):
 
 
 def lifted_grains(model, period, amplitude, area_fraction):
-    """N of Eq. 3.8 by quadrature: grains that fall below the point of no return in half an oscillation."""
+    """N of Eq. 3.8 by quadrature: the number of grains that fall below the point of no return in half an oscillation."""
     g, d = model.gravity, model.grain_diameter
 
     def rate(t):  # Eq. 3.7
@@ -62,7 +62,7 @@ def test_rise_rate_is_the_layer_of_fallen_grains_per_half_period(height, times, 
     period = times * model.first_rising_period
     grains = lifted_grains(model, period, amplitude, area_fraction)
     layer = grains * np.pi * d**2 / 4 / (area_fraction * 2 * amplitude)  # text above Eq. 3.11
-    # At T near T_rise the bracket of Eq. 3.15 is the small difference of numbers near one.
+    # Near T = T_rise the bracket of Eq. 3.15 is a small difference of numbers near one.
     assert model.filling_rate(period) == pytest.approx(layer / (period / 2), rel=1e-9, abs=1e-14 * g * period)
 
 

@@ -1,4 +1,4 @@
-"""The half full drum of a slow Newtonian fluid: the closed form of its velocity, and our continuum beside it."""
+"""The half full drum of a slow Newtonian fluid: the closed form of its velocity, and our continuum against it."""
 
 import numpy as np
 import pytest
@@ -22,18 +22,20 @@ def test_the_closed_form_sums_its_series(depth):
 def test_the_closed_form_sticks_to_the_wall_carries_nothing_and_leaves_the_surface_free():
     assert exact(1.0) == pytest.approx(1, abs=1e-15)
     assert quad(exact, 0, 1)[0] == pytest.approx(0, abs=1e-12)
-    assert exact(1e-6) == pytest.approx(exact(0.0), abs=1e-11)  # even in the depth: no shear at the surface
+    assert exact(1e-6) == pytest.approx(
+        exact(0.0), abs=1e-11
+    )  # u is even in the depth, so there is no shear at the surface
 
 
 def test_our_continuum_nears_the_closed_form():
-    """Wall and surface are of first order: half the spacing, half the error. What is not of that order is left a fifth of it."""
+    """At wall and surface the error is of first order: half the spacing halves it. Other orders may be a fifth of it."""
     numbers = drum_newtonian.drum()
     coarse, fine = (drum_newtonian.ours(numbers, cells, 0.2, 60.0).error for cells in (28, 56))
     assert fine < 0.06 and coarse / fine > 1.6
 
 
 def test_a_surface_is_the_line_that_was_painted():
-    """By the part of each column's square that lies below the line at the column's middle: exact."""
+    """The surface is a straight line: in each column the part below it, at the column's middle, gives the angle exactly."""
     x = np.linspace(-0.975, 0.975, 40)
     below = np.clip((0.02 + 0.1 * x - x[:, None]) / 0.05 + 0.5, 0, 1)
     angle, level = drum_newtonian.surface(x, x, below, 0.5)
@@ -41,7 +43,7 @@ def test_a_surface_is_the_line_that_was_painted():
 
 
 def made_up(error, seconds):
-    """Return a Found with this error and these seconds, of which nothing was run."""
+    """Return a made-up Found with this error and these seconds."""
     found = Found.__new__(Found)
     found.u, found.seconds = exact(drum_newtonian.DEPTHS) * (1 + error), seconds
     return found

@@ -5,10 +5,10 @@ A fluid of rheology mu(I) on a slope of angle theta has mu(I) = tan(theta), one 
     u(y) = u_0 + 2/3 I sqrt(phi g cos(theta))/d (h^3/2 - (h - y)^3/2)
 
 (GDR MiDi, Eur. Phys. J. E 14, 341 (2004)), with u_0 = 0 at the base. Grains are the disks of drum and shear study: d to
-1.2 d, spring and dashpot, friction 0.5, restitution 0.92; units are d, rho, g. The law is fitted in the middle of the layer:
-beside the base and beneath the surface other laws hold, for some d, so that u_0 is not 0.
+1.2 d, spring and dashpot, friction 0.5, restitution 0.92; units are d, rho, g. The profile is fitted in the middle of the layer:
+within some d of the base and of the surface other laws hold, so that u_0 is not 0.
 
-The base is rough in depth. On a row of equal disks at one height grains of almost one size order in rows that slide over each
+The base has disks at random heights. On a row of equal disks at one height, grains of similar size form rows that slide over each
 other, with phi up to 0.87 near the base, and flow twice as fast.
 """
 
@@ -21,17 +21,17 @@ from graindrive.scenes import scene
 from graindrive.scenes.material import SpringDashpotMaterial
 from graindrive.postproc.shear.rheology import friction_law
 
-SLOPE = 0.38  # tan(theta); grains stop near 0.27, and speed up for ever from some 0.45 on
+SLOPE = 0.38  # tan(theta); grains stop near 0.27, and do not become steady above 0.45
 CONSTANTS = dict(
     mu_s=0.2605, mu_2=0.724, i_0=0.312
 )  # studies/RESULTS.md: homogeneous shear up to I = 0.2, chi^2/f = 0.8
-DILATANCY = 0.818, -0.28  # phi = a + b I, there
+DILATANCY = 0.818, -0.28  # phi = a + b I, from the same source
 WIDTH, LAYERS, PITCH, ROUGHNESS = 20.0, 36, 1.26, 1.2  # d
 STIFFNESS = 5e4 * np.pi / 4  # rho g d: 1,600 times the pressure at the base, so that grains are stiff
 STEP, EVERY = 6e-4, 250  # sqrt(d/g), a sixteenth of a contact; steps between two samples
 SETTLE, MEASURE = 120, 150  # sqrt(d/g): the flow forgets its start in h^2 phi/(mu p/shear rate), some 60
-SLOW = 0.7  # of the closed form's velocity, at the start
-LOW, HIGH = 0.2, 0.8  # of the layer: where the profile is fitted
+SLOW = 0.7  # initial velocity over that of the closed form
+LOW, HIGH = 0.2, 0.8  # heights over that of the layer between which the profile is fitted
 
 
 def inertial_number(slope):
@@ -48,7 +48,7 @@ def base(rng):
 
 
 def layer(rng):
-    """Put a loose lattice of grains above that moves down the slope with a part of the closed form's velocity; return ids."""
+    """Put a loose lattice of grains above the base, moving with a part of the closed form's velocity; return ids."""
     from yade import O
     from yade.minieigenHP import Vector3
 
@@ -65,7 +65,7 @@ def layer(rng):
 
 
 def bagnold(y, height, phi, power=1.5):
-    """Return u(y) of the closed form with no slip; with another `power` that of another fluid, up to a factor."""
+    """Return u(y) of the closed form with no slip at the base; another `power` gives another fluid's profile, up to a factor."""
     cos = 1 / np.sqrt(1 + SLOPE**2)
     return 2 / 3 * inertial_number(SLOPE) * np.sqrt(phi * cos) * (height**power - (height - y) ** power)
 
@@ -109,7 +109,7 @@ def flow():
 
 @pytest.fixture(scope="module")
 def middle(flow):
-    """The middle of the layer: `y`, `u` (n,), its mean `phi`, and `height`, at which that phi would have the weight above it."""
+    """The middle of the layer: `y`, `u` (n,), mean `phi`, and `height`, that of a layer of this phi with the same weight."""
     top = flow.y[np.flatnonzero(flow.phi > 0.4)[-1]]
     chosen = (flow.y > LOW * top) & (flow.y < HIGH * top)
     phi = flow.phi[chosen].mean()
@@ -119,7 +119,7 @@ def middle(flow):
 
 
 def fitted(middle, power):
-    """Return (factor on the closed form, root mean square of the rest over the range of u) with u_0 free."""
+    """Fit the closed form with a free u_0; return (factor on it, root mean square residual over the range of u)."""
     shape = bagnold(middle.y, middle.height, middle.phi, power)
     design = np.c_[np.ones_like(shape), shape]
     constants, *_ = np.linalg.lstsq(design, middle.u, rcond=None)
@@ -127,13 +127,13 @@ def fitted(middle, power):
 
 
 def test_the_flow_is_steady(flow):
-    """The mean velocities of the two halves; an avalanche or a jam would change it by its own size."""
+    """The mean velocities of the two halves agree; an avalanche or a jam would change them by their own size."""
     early, late = np.array_split(flow.speed, 2)
     assert late.mean() == pytest.approx(early.mean(), rel=0.08)
 
 
 def test_the_profile_has_the_power_of_bagnold_flow(middle):
-    """0.2 to 0.9 % of its range are left (four runs of two seeds); a line leaves 1.5 to 2.5 %, a parabola 2.1 to 3.1 %."""
+    """The residual is 0.2 to 0.9 % of the range (four runs, two seeds); that of a line 1.5 to 2.5 %, a parabola 2.1 to 3.1 %."""
     _, rest = fitted(middle, 1.5)
     assert rest < 0.014
     for power in (1.0, 2.0):
@@ -153,6 +153,6 @@ def test_its_amplitude_is_that_of_mu_of_i_of_the_shear_study(middle):
 
 
 def test_its_area_fraction_is_that_of_the_shear_study(middle):
-    """Measured 0.778; 0.787 by the line, which has an error of 0.001 there; one number for all heights as I is."""
+    """Measured 0.778; the fit gives 0.787 with an error of 0.001. phi is the same at all heights, because I is."""
     at_zero, slope = DILATANCY
     assert middle.phi == pytest.approx(at_zero + slope * inertial_number(SLOPE), abs=0.015)

@@ -1,4 +1,4 @@
-"""A body of the user's own outline is the solid: placed, turned and pushed about the solid's centroid, on either loop."""
+"""A body with a user's outline moves like the solid: placed, turned and pushed about the solid's centroid, on both loops."""
 
 import math
 
@@ -69,13 +69,13 @@ def test_the_position_is_the_centroid(shape, loop, tmp_path):
     state = O.bodies[id_].state
     for _ in range(2):
         assert tuple(state.pos) == (*AT, 0) and tuple(state.ori) == (0, 0, 0, 1)
-        # The beads stand within half a bead of the outline's extent, measured from the centroid.
+        # The beads reach the outline's extent, measured from the centroid, within half a bead.
         low = beads_of(id_).min(axis=0) - 0.25
         corner = np.min(SHAPES[shape], axis=0)
         blunt = (0, 0) if shape != "arrow" else (0.25 * (1 / math.tan(math.atan2(8, 3) / 2) - 1), 0)
         np.testing.assert_allclose(low - AT, corner - CENTROIDS[shape] + blunt, rtol=0, atol=1e-9)
         run(1)
-    # YADE places members from the clump's place and theirs in it at every step.
+    # At every step YADE places members by the clump's position and their positions in the clump.
     np.testing.assert_allclose(beads_of(id_), body.beads + AT, rtol=0, atol=16 * EPS * 10)
     assert state.mass == 20 and state.inertia[2] == body.inertia
 
@@ -93,7 +93,7 @@ def test_a_thrown_body_turns_about_its_centroid_and_falls_with_it(shape, loop, t
         run(2000)
         n = 2000 * turn
         t = n * DT
-        # Leapfrog's free fall, n (n + 1) dt^2/2; n additions round off.
+        # Leapfrog's free fall is n (n + 1) dt^2/2, with the round-off of n additions.
         centre = np.array([AT[0] + 0.3 * t, AT[1] + 0.5 * t - n * (n + 1) * DT**2 / 2])
         np.testing.assert_allclose(np.array(state.pos)[:2], centre, rtol=0, atol=n * EPS * 20)
         c, s = math.cos(0.7 * t), math.sin(0.7 * t)

@@ -23,7 +23,7 @@ def whole(tmp_path_factory):
 def test_the_ledger_closes_with_everything_in_the_scene(whole):
     summary, rows = whole
     assert rows.shape == (STEPS // BLOCK, len(soak.COLUMNS)) and summary["passed"]
-    # 4000 steps add some 1e5 numbers to the entries, round-off 1e-16 of the turnover each, in both directions.
+    # 4000 steps add some 1e5 numbers to the entries, each with a round-off of 1e-16 of the energy exchanged.
     assert summary["closure_worst"] < 1e-12
     last = dict(zip(soak.COLUMNS, rows[-1]))
     assert last["time"] == STEPS * soak.TIME_STEP
@@ -37,7 +37,7 @@ def test_a_run_that_was_killed_goes_on_to_the_same_bits(whole, tmp_path):
         os._exit(1)
     assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGKILL
     with open(tmp_path / "ledger.csv", "a") as file:
-        file.write("2.0,1e-15,3")  # a line that the kill cut
+        file.write("2.0,1e-15,3")  # a line that the kill has cut off
     summary = soak.soak(tmp_path, STEPS, BLOCK)
     assert summary["steps_before"] == 3 * BLOCK
     assert np.array_equal(soak.rows_until(tmp_path / "ledger.csv", np.inf), whole[1])

@@ -1,4 +1,4 @@
-"""The commands a person runs: what they say and how they exit when something is missing, wrong, busy or interrupted.
+"""The commands of scripts/: messages and exit codes when something is missing, wrong, busy or interrupted.
 
 A miniature checkout (the real scripts, an empty CMake project) and stand-ins for Debian's programs make every fault
 cheap to provoke; nothing here installs anything.
@@ -15,7 +15,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 NO_PACKAGES = {"GRAINDRIVE_NO_PACKAGES": "1"}
-# A run's target, and what only tests have: each makes a file, so that a test sees what was built.
+# The target of runs, and one that only tests have. Each makes a file, so that a test can check what was built.
 MINIATURE = """cmake_minimum_required(VERSION 3.25)
 project(miniature LANGUAGES NONE)
 add_custom_command(OUTPUT module COMMAND ${CMAKE_COMMAND} -E touch module)
@@ -43,7 +43,7 @@ def checkout(tmp_path):
 
 @pytest.fixture
 def stand_in(tmp_path):
-    """A function that puts a shell script in front of a program on PATH; the environment to use is its attribute."""
+    """A function that replaces a program on PATH by a shell script; the environment to use is its attribute."""
     folder = tmp_path / "stand-ins"
     folder.mkdir()
 
@@ -99,7 +99,7 @@ def test_second_setup_says_nothing_and_is_quick(checkout):
     assert call(checkout, "setup").returncode == 0
     begin = time.monotonic()
     done = call(checkout, "setup")
-    assert time.monotonic() - begin < 3  # the promise in scripts/setup's contract [s]
+    assert time.monotonic() - begin < 3  # a set-up that has nothing to do must be quick [s]
     assert done.returncode == 0 and done.stdout == done.stderr == ""
 
 
@@ -166,7 +166,7 @@ def test_each_package_is_listed_once_with_groups_that_setup_knows_and_a_reason(c
 
 @pytest.fixture
 def asked_for(checkout, stand_in, tmp_path):
-    """A function that calls a command where no package is installed and returns the names that it asks apt-get for."""
+    """A function that calls a command without any package installed and returns the names that it gives to apt-get."""
     stand_in("dpkg-query", "exit 1")
     stand_in("dpkg", "exit 0")
     stand_in("sudo", '"$@"')
@@ -263,7 +263,7 @@ def test_no_sudo_tells_what_to_ask_for(checkout, stand_in, tmp_path):
 
 
 def test_read_only_checkout_is_named(checkout):
-    (checkout / "build").write_text("")  # a file where the folder must be: refused even to root
+    (checkout / "build").write_text("")  # a file in place of the folder cannot be written even by root
     done = call(checkout, "setup")
     assert done.returncode == 1 and f"cannot write to {checkout}/build" in done.stderr
 

@@ -1,4 +1,4 @@
-"""A scene that breaks under an engine gives one clear error, and the process and the next scene live on."""
+"""A scene that fails under an engine gives one clear error; the process and the next scene work."""
 
 import threading
 
@@ -129,7 +129,7 @@ def test_a_failing_run_in_the_background_reaches_the_one_who_waits():
 
 
 def test_a_law_behind_yades_contact_maker_gives_the_same_forces():
-    # It runs in an OpenMP loop, where raising would end the process; all that it needs can be had from the two bodies.
+    # The functor runs in an OpenMP loop, where an error would end the process; all that it needs is in the two bodies.
     forces = []
     for maker in (engines.Ip2_FrictMat_FrictMat_ContactPhys(), Ip2_FrictMat_FrictMat_FrictPhys()):
         new_scene()

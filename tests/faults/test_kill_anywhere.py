@@ -1,4 +1,4 @@
-"""A run that is killed before any of its changes of the file system, or meets a full disk anywhere, comes out whole."""
+"""A run that is killed, or finds the disk full, at any of its changes of the file system can be resumed to a complete run."""
 
 import json
 import os
@@ -33,7 +33,7 @@ def carry_out(killer, folder, scenario, every):
     "scenario, every", [("plain", 4), ("interrupted", 7), ("resumed", 7), ("redo", 17), ("vtk", 29)]
 )
 def test_no_kill_loses_a_row_leaves_litter_or_wedges_the_run(killer, tmp_path, scenario, every):
-    """A run makes some 130 changes; EVERY is a matter of time only, 1 tries them all."""
+    """A run makes some 130 changes. EVERY only saves time: with 1 all of them are tried."""
     found = carry_out(killer, tmp_path, scenario, every)
     assert found["failures"] == [] and found["kills"] > 5
 

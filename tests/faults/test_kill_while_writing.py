@@ -1,4 +1,4 @@
-"""A writer that is killed at any moment, without a pause between its writes, leaves whole data."""
+"""A writer that is killed at any moment, without a pause between its writes, leaves complete data."""
 
 import random
 import subprocess

@@ -1,4 +1,4 @@
-"""Files that are no outlines: the true reason on one line, soon, and nothing made; names of files that a study takes."""
+"""Files that hold no outline: one line with the reason, quickly, and no run folder; forms of file names that a study accepts."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ SQUARE = "POLYGON ((0 0, 4 0, 4 4, 0 4, 0 0))"
 
 
 def reason(path):
-    """Return what a study says of an outline's file; the file also has a digest that takes no longer to find."""
+    """Return a study's message on an outline file; computing the file's digest must be as quick."""
     intruder.contents_of(str(path))
     with pytest.raises(UsageError) as caught:
         intruder.make(str(path), bead_diameter=0.5, mass=1)

@@ -1,4 +1,4 @@
-"""A study under the real `yade` program: exit codes, messages, signals, ports, and what it leaves on the disk."""
+"""A study under the real `yade` program: exit codes, messages, signals, ports, and files that remain on the disk."""
 
 import json
 import os
@@ -217,7 +217,7 @@ def test_batch_tables_run_rows_in_folders_of_their_own(place):
 
 
 def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
-    def small_files():  # the system's own limit stands for the full disk: writing fails in the same places
+    def small_files():  # a file size limit of the system stands for a full disk: writing fails at the same places
         resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
 
     process = place.start(preexec_fn=small_files)

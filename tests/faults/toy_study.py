@@ -23,7 +23,7 @@ class Toy(StudyParameters):
 
 
 def study(p, folder):
-    """Fly; each block of a tenth of the steps is one row of the series, one frame and one checkpoint."""
+    """Run the flight; each block of a tenth of the steps gives one row of the series, one frame and one checkpoint."""
     from yade import ForceResetter, NewtonIntegrator, O, PyRunner, utils
 
     print("ports", sorted(listening_ports()), flush=True)
@@ -58,7 +58,7 @@ def study(p, folder):
 
 
 def figure(path):
-    """Stand for a figure that cannot be drawn where the run's parameters ask for it."""
+    """Fail if the parameters request it, like a figure that cannot be drawn."""
     if "badfigure" in path.name:
         raise ValueError("no figure")
     (path / "figure.png").write_bytes(b"")

@@ -1,4 +1,4 @@
-"""The benchmark's beds of spheres: built as said, computed alike by LAMMPS and LIGGGHTS, and refused where they are not."""
+"""The benchmark's beds of spheres: as described, with the same results in LAMMPS and LIGGGHTS, and an error if these differ."""
 
 import functools
 
@@ -39,7 +39,7 @@ def contacts(a_scene):
 
 
 def energy_on_grain_loop(a_scene, steps):
-    """The kinetic energy after so many steps of a scene whose velocities are on the step."""
+    """The kinetic energy after some steps of a scene whose velocities are given at full steps."""
     ours.bodies(a_scene)
     loop = ours.grain_loop(a_scene)
     loop.beginOnStep()
@@ -48,7 +48,7 @@ def energy_on_grain_loop(a_scene, steps):
 
 
 def write(a_scene, folder):
-    """The data file for each peer, in a folder of its own."""
+    """The data file for each peer, in a separate folder."""
     places = {}
     for name, peer in (("LAMMPS", lammps), ("LIGGGHTS", liggghts)):
         places[name] = folder / name
@@ -65,15 +65,15 @@ def test_a_settled_bed_lies_still_on_its_base(bed):
     free = bed["kind"] == layout.FREE
     assert (free.sum(), (~free).sum()) == (500, 64)
     assert layout.kinetic_energy(bed) == 0
-    assert (bed["z"][~free] == 0).all() and bed["z"][free].min() > 0.4 * D  # none has slipped through
+    assert (bed["z"][~free] == 0).all() and bed["z"][free].min() > 0.4 * D  # no sphere has passed through another
     assert bed["r"][free].min() >= 0.475 * D and bed["r"][free].max() <= 0.525 * D
     assert tuple(bed["constants"]) == (5e6, 0.45, 0.6) and bed["dt"] == 1e-5
-    # Ends above the base's centres and below the highest one count as full: loose packings of 0.55 look up to a tenth denser.
+    # The volume from the base's centres to the highest centre counts as full: a loose packing of 0.55 seems up to 10 % denser.
     assert 0.5 < (4 / 3 * np.pi * bed["r"][free] ** 3).sum() / (64 * D**2 * bed["z"].max()) < 0.68
 
 
 def test_a_settled_bed_is_carried_by_its_base(bed):
-    """The springs of the bed's making are lost, so it settles once more; then friction carries its part as well."""
+    """The springs of the bed's preparation are not stored, so it settles again; then friction bears a part of the weight too."""
     ours.bodies(bed)
     loop = ours.grain_loop(bed)
     free = bed["kind"] == layout.FREE
@@ -86,7 +86,7 @@ def test_a_settled_bed_is_carried_by_its_base(bed):
         of_base = ~free[table["j"]] ^ ~free[table["i"]]
         sign = np.where(free[table["j"]], 1, -1)[of_base]
         borne.append((sign * (table["normal_force"] + table["tangential_force"])[of_base, 2]).sum())
-    assert np.mean(borne) == pytest.approx(weight, rel=0.01)  # it swings by some percent still, over many periods
+    assert np.mean(borne) == pytest.approx(weight, rel=0.01)  # the bed still oscillates by some percent
 
 
 def test_beds_side_by_side_fit_at_their_seams(bed):
@@ -94,7 +94,7 @@ def test_beds_side_by_side_fit_at_their_seams(bed):
     assert layout.periods(three) == pytest.approx((24 * D, 8 * D, 0))
     one, many = contacts(bed), contacts(three)
     assert len(many["i"]) == 3 * len(one["i"]) > 1500
-    # Places that were shifted by a period: round-off of 24 d in an overlap of 1e-3 d.
+    # Positions that were shifted by a period have the round-off of 24 d, in an overlap of 1e-3 d.
     assert np.sort(many["overlap"]) == pytest.approx(np.sort(np.tile(one["overlap"], 3)), abs=1e-13 * D)
 
 
@@ -113,7 +113,7 @@ def test_a_tilted_bed_starts_with_bagnolds_profile(bed):
     k = len(z) // 2
     rate = (v[k + 20] - v[k - 20]) / (z[k + 20] - z[k - 20])
     middle = depth - (z[k + 20] + z[k - 20]) / 2
-    # A difference quotient over a twelfth of the depth h: its error is that times itself over 24 or so.
+    # A difference quotient over a twelfth of the depth has an error of about (1/12)^2/24.
     assert rate == pytest.approx(0.1 * np.sqrt(0.6 * 9.81 * np.cos(0.4) * middle) / D, rel=0.01)
 
 
@@ -137,14 +137,14 @@ def test_every_scene_has_its_comparisons():
 @needs_lammps
 @pytest.mark.parametrize("restitution", [0.2, 0.6, 0.9])
 def test_lammps_damps_to_the_same_restitution(tmp_path, restitution):
-    """Two spheres that meet head on: ours, which has a test of its own, against Tsuji's polynomial, inverted."""
+    """Two spheres in a head-on impact: our restitution, which other tests check, against the inverse of Tsuji's polynomial."""
     pair = lift.poured(8, 8, 2)
     for key, value in dict(x=[6e-3, 7.51e-3], y=[6e-3, 6e-3], z=[9e-3, 9e-3], vx=[0.1, -0.1]).items():
         pair[key][:2] = value
     pair.update(gravity=np.zeros(3), constants=(5e6, 0.45, restitution))
     pair["r"][:2] = D / 2
     lammps.write(pair, tmp_path)
-    for steps in (60, 600):  # in the impact and after it
+    for steps in (60, 600):  # during and after the impact
         theirs = lammps.run(pair, steps, tmp_path, 1)["energy"]
         # Bisection and round-off of 600 steps; LAMMPS writes 15 digits.
         assert energy_on_grain_loop(pair, steps) == pytest.approx(theirs, rel=1e-10)
@@ -156,7 +156,7 @@ def test_lammps_damps_to_the_same_restitution(tmp_path, restitution):
 def test_peers_compute_the_same_scene(tmp_path, bed, flow, run, name, moving):
     a_scene = flow if moving else bed
     folder = write(a_scene, tmp_path)[name]
-    # The tolerances have their reasons beside them.
+    # The reasons for the tolerances are given where they are defined.
     when_smooth = benchmark.tolerance_when_smooth(name, a_scene)
     for friction, tolerance in ((0.0, when_smooth), (0.5, benchmark.tolerance(a_scene))):
         same = dict(a_scene, friction=friction)
@@ -174,7 +174,7 @@ def test_peers_compute_the_same_scene(tmp_path, bed, flow, run, name, moving):
     ],
 )
 def test_no_ratio_against_a_peer_that_computes_something_else(tmp_path, capsys, bed, friction, change, word):
-    """A peer that forgets friction, and peers that are a little wrong where friction would hide it."""
+    """The comparison detects a peer without friction, and peers with small errors that friction would hide."""
     folder = write(bed, tmp_path)["LAMMPS"]
     path = benchmark.save(bed, tmp_path, "scene.npz")
 

@@ -1,7 +1,7 @@
 """The half full drum of a Newtonian fluid in our continuum and in OpenFOAM's interFoam (Debian's `openfoam`).
 
-Both are first-order at the wall and at the surface, so on 40 squares across each is several per cent off; how the error shrinks
-is what `scripts/bench --scene drum_newtonian` shows.
+Both are of first order at the wall and at the surface, so 40 squares across give errors of several percent; its decrease
+is shown by `scripts/bench --scene drum_newtonian`.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ from graindrive.benchmark import drum_newtonian, interfoam
 pytestmark = pytest.mark.skipif(not interfoam.available(), reason="needs interFoam: apt-get install openfoam")
 
 CELLS, STEP = 40, 0.2
-OFF = 0.07  # of u(z): half a cell, 0.025 R, times du/dz of 1.2 Omega R on average, over a mean |u| of 0.4
+OFF = 0.07  # of u(z): half a cell, 0.025 R, times a mean du/dz of 1.2 Omega R, over a mean |u| of 0.4
 
 
 @pytest.fixture(scope="module")
 def both(tmp_path_factory):
-    """What either code finds on the same squares."""
+    """The results of both codes on the same squares."""
     numbers = drum_newtonian.drum()
     other = drum_newtonian.theirs(numbers, CELLS, 2 * STEP, drum_newtonian.END, tmp_path_factory.mktemp("drum"))
     return drum_newtonian.ours(numbers, CELLS, STEP, drum_newtonian.END), other
@@ -34,15 +34,15 @@ def test_velocities_are_the_same_within_the_errors_of_both(both):
 
 
 def test_the_surface_stands_at_the_same_angle(both):
-    """Off the contact lines the pressure of the flow below carries the surface, so the angle errs as u(z) does."""
+    """Away from the contact lines the pressure of the flow bears the surface, so the angle has the error of u(z)."""
     own, other = both
     assert 0 < own.angle and abs(own.angle / other.angle - 1) < 2 * OFF
 
 
 def test_the_drum_holds_the_bed_in_both(both):
-    """A wall that meets a level surface has the stress 4 eta Omega/(pi sin theta), and a torque that grows with the logarithm of
-    the angle that cuts it off, (8/pi) eta Omega ln(2/epsilon). In ours that is the wall's transition, two cells; in interFoam's
-    a part of one, and it drags a film up, sqrt(nu Omega R/g) = 0.02 thick, four tenths of a cell.
+    """At a level surface the wall's stress is 4 eta Omega/(pi sin theta), so that its torque grows with the logarithm of
+    the smallest angle that is resolved, (8/pi) eta Omega ln(2/epsilon). In our code this is the wall's transition, two cells; in
+    interFoam a part of a cell, and there the wall drags a film up, sqrt(nu Omega R/g) = 0.02 or 0.4 cells thick.
     """
     spacing = 2 / CELLS
     low, high = (8 / np.pi * 0.02**2 * np.log(2 / cut) for cut in (2 * spacing, spacing / 16))
@@ -51,9 +51,9 @@ def test_the_drum_holds_the_bed_in_both(both):
 
 
 def test_the_comparison_can_fail(tmp_path):
-    """A gas as viscous as the fluid holds its surface still, by symmetry; so u(z) is off the closed form, in both alike.
+    """A gas as viscous as the fluid keeps the surface at rest by symmetry, so u(z) differs from the closed form in both codes.
 
-    Its density is half the fluid's, for interFoam does not bear a light and viscous gas at this step.
+    The gas has half the fluid's density, because interFoam is unstable with a light and viscous gas at this time step.
     """
     numbers = drum_newtonian.drum(viscosity_ratio=1.0, density_ratio=2.0)
     own = drum_newtonian.ours(numbers, 28, 0.2, 30.0)

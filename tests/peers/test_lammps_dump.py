@@ -1,4 +1,4 @@
-"""The dump of a run as LAMMPS itself reads it: the same box, places and velocities, frame by frame."""
+"""LAMMPS reads the dump of a run with the same box, positions and velocities, frame by frame."""
 
 import shutil
 import subprocess

@@ -1,8 +1,8 @@
 """The same disks in LAMMPS (Debian's `lmp`) and in YADE's loop with Graindrive's laws: impacts, and a bed.
 
-Both integrate by leapfrog and both give the law x at n and v at n-1/2, so starting apart, with no force, all agrees but for
+Both integrate by leapfrog and give the law x at n and v at n-1/2, so that from a start without contacts results agree except for
 round-off and one thing: LAMMPS projects the tangential spring on the new tangent, which shortens it by (d theta)^2/2 each
-step; we keep its length. Stiff contacts turn so little while they last that this stays below 1e-9.
+step; we keep its length. Stiff contacts turn so little that this stays below 1e-9.
 """
 
 import math
@@ -39,7 +39,7 @@ def lammps(folder, disks, law, steps, dt, box, boundary="f f", gravity=0.0, froz
     lines = [HEADER.format(boundary=boundary, x0=x0, x1=x1, y0=y0, y1=y1, skin=0.1)]
     for i, (x, y, radius, vx, vy, spin) in enumerate(disks, 1):
         lines.append(f"create_atoms 1 single {x!r} {y!r} 0.0 units box")
-        # Without density/disc a two-dimensional disk would weigh what a sphere does.
+        # Without density/disc a two-dimensional disk would have the mass of a sphere.
         lines.append(f"set atom {i} diameter {2 * radius!r} density/disc 1.0 omega 0 0 {spin!r} vx {vx!r} vy {vy!r}")
     lines += [f"pair_style {law}", "pair_coeff * *", f"timestep {dt!r}"]
     moving = "all"
@@ -63,7 +63,7 @@ def ours(disks, law, friction, steps, dt, period=None, gravity=0.0, frozen=()):
     new_scene(dt, period)
     for i, (x, y, radius, vx, vy, spin) in enumerate(disks):
         held = i in set(frozen)
-        # Both start from the velocity at time 0; YADE takes what it is given for the one half a step before.
+        # Both start from the velocity at time 0; YADE interprets a given velocity as that half a step earlier.
         disk(x, y, radius, (vx, vy + gravity * dt / 2 * (not held)), spin, frozen=held)
     loop(law, friction=friction, gravity=(0, -gravity))
     run(steps)
@@ -117,12 +117,12 @@ def test_a_hundred_random_impacts_end_as_in_lammps(tmp_path, friction):
         assert np.mean(np.abs(np.array(disks)[:, 5] - mine[:, 4]) > 1e-3) > 0.9
     else:
         np.testing.assert_array_equal(mine[:, 4], np.array(disks)[:, 5])
-    # See the file's docstring; 0.5 x 1,100 steps x (2 x 5e-7)^2 = 5e-10 of the tangential velocity, at most 3 here.
+    # See the docstring of this file: 0.5 x 1,100 steps x (2 x 5e-7)^2 = 5e-10 of the tangential velocity, at most 3 here.
     np.testing.assert_allclose(mine, theirs, rtol=0, atol=1e-9)
 
 
 def test_the_comparison_can_fail(tmp_path):
-    # A stiffness wrong by a millionth is seen.
+    # An error of a millionth in the stiffness is detected.
     disks = random_impacts(10, seed=4)
     theirs = lammps(tmp_path, disks, f"gran/hertz/history {K_N!r} {K_T!r} {GAMMA!r} {GAMMA!r} 0.5 1", STEPS, DT, BOX)
     mine = ours(disks, hertz(K_N * (1 + 1e-6), K_T, GAMMA, GAMMA), 0.5, STEPS, DT)
@@ -131,9 +131,9 @@ def test_the_comparison_can_fail(tmp_path):
 
 @pytest.mark.parametrize("friction", [0.0, 1e4])
 def test_linear_impacts_without_slip_end_as_in_lammps(tmp_path, friction):
-    # LAMMPS' gran/hooke/history cuts a slipping spring where ours waits: the two laws are one only without slip.
-    # Its damping is per mass, ours is set by restitution: equal masses make them equal.
-    # 1e4 is the largest friction that LAMMPS takes; few contacts slip at the very end, and with this seed none.
+    # LAMMPS' gran/hooke/history shortens the spring of a slipping contact, our law keeps it: they are equal only without slip.
+    # Its damping is given per mass, ours by the restitution; for equal masses they can be made equal.
+    # 1e4 is the largest friction that LAMMPS accepts; few contacts slip just before they end, and none with this seed.
     disks = random_impacts(40, seed=7, same_size=True)
     k_n, k_t, restitution = 1e6, 2e6 / 7, 0.92
     log_e, mass = math.log(restitution), math.pi / 8  # reduced mass of two disks of diameter and density 1
@@ -151,7 +151,7 @@ def test_linear_impacts_without_slip_end_as_in_lammps(tmp_path, friction):
 
 
 def test_a_bed_settles_as_in_lammps(tmp_path):
-    # Periodic in x, frozen base, gravity, sizes mixed, friction; before chaos lifts round-off.
+    # Periodic in x, frozen base, gravity, different sizes, friction; compared before chaos has amplified round-off.
     rng = np.random.default_rng(3)
     base = [(x + 0.5, 0.5, 0.5, 0.0, 0.0, 0.0) for x in range(8)]
     grains = []
@@ -173,6 +173,6 @@ def test_a_bed_settles_as_in_lammps(tmp_path):
     real = sum(i.isReal for i in O.interactions)
     moved = np.abs(mine[:, 4] - np.array(disks)[:, 5]) > 1e-3
     assert real > 5 and moved.sum() > 20  # spins that friction changed
-    # Round-off, and the shortened springs, grow by collisions: 1e-11 after 6,000 steps, 2e-10 in positions and velocities
+    # Collisions amplify round-off and the shortening of springs: 1e-11 after 6,000 steps, 2e-10 in positions and velocities
     # after 10,000 (0.2 s, two collisions a grain), ten times more after twice the time.
     np.testing.assert_allclose(mine, theirs, rtol=0, atol=3e-9)

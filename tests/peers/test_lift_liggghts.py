@@ -1,8 +1,8 @@
 """The lift study against LIGGGHTS (Debian's `liggghts`): the same bed at rest, carried past the same held cylinder.
 
 Both begin without tangential springs, which LIGGGHTS cannot be given. Friction is not the same law (see test_spheres_liggghts):
-LIGGGHTS takes half an overlap off the lever, and lets spring and dashpot together exceed Coulomb's bound. So the first steps are
-the same to round-off without friction, nearly so with it, and time means of drag and lift within their errors.
+LIGGGHTS shortens the lever by half an overlap, and lets spring and dashpot together exceed Coulomb's bound. The first steps agree
+to round-off without friction and closely with it, and time means of drag and lift agree within their errors.
 """
 
 from dataclasses import replace
@@ -41,7 +41,7 @@ def built(lift, friction, speed):
 
 
 def difference(lift, folder, friction, speed, steps, **changes):
-    """Return the largest difference of forces in the first steps over the largest force; LIGGGHTS may get another material."""
+    """Return the largest difference of forces in the first steps over the largest one; LIGGGHTS may be given another material."""
     p, stage, material = built(lift, friction, speed)
     other = peer_lift.theirs(lift, p, stage, replace(material, **changes), steps, 1, folder)
     own = peer_lift.ours(steps, 1, 1)
@@ -56,7 +56,7 @@ def difference(lift, folder, friction, speed, steps, **changes):
             0.5,
             0.0,
             5e-3,
-        ),  # overlaps are of the order of a hundredth of a radius, and so is what they take off the levers
+        ),  # overlaps, and so the differences of the levers, are of the order of a hundredth of a radius
     ],
 )
 def test_a_bed_let_go_takes_the_same_first_steps(lift, tmp_path, friction, speed, tolerance):
@@ -68,9 +68,9 @@ def test_the_comparison_can_fail(lift, tmp_path):
 
 
 def test_drag_and_lift_are_the_same_within_their_errors(lift, tmp_path):
-    """Chaos makes two runs of it, whose means differ by their errors; three of these are passed once in 400 times."""
+    """By chaos the two runs differ, and their means by their errors; a difference of three errors occurs once in 400 times."""
     own, other, *_ = peer_lift.both(lift, lift.LiftParameters(**SMALL), tmp_path)
     for name in ("drag", "lift"):
         mine, peers = own[name], other[name]
-        assert max(mine.error, peers.error) < 0.1 * own["drag"].value  # or the next line could hardly fail
+        assert max(mine.error, peers.error) < 0.1 * own["drag"].value  # otherwise the next line could hardly fail
         assert abs(mine.value - peers.value) < 3 * np.hypot(mine.error, peers.error)

@@ -24,7 +24,7 @@ def settling_bed():
 
 
 def on_grain_loop(a_scene, steps, **settings):
-    """Return the loop after so many steps of a scene whose velocities are on the step."""
+    """Return the loop after some steps of a scene whose velocities are given at full steps."""
     ours.bodies(a_scene)
     loop = ours.grain_loop(a_scene, **settings)
     loop.beginOnStep()
@@ -36,7 +36,7 @@ def test_kinetic_energy_of_a_settling_bed(tmp_path):
     bed = settling_bed()
     lammps.write(bed, tmp_path)
     theirs = lammps.run(bed, 10_000, tmp_path, 1)["energy"]
-    # The same arithmetic in another order: 1e-16 a step, grown by a crowd that comes to rest over 10,000 of them.
+    # The same arithmetic in another order: 1e-16 a step, amplified over 10,000 steps of grains that come to rest.
     assert on_grain_loop(bed, 10_000).kineticEnergyOnStep() == pytest.approx(theirs, rel=1e-6)
 
 
@@ -52,7 +52,7 @@ def test_a_collision_of_two_disks(tmp_path):
     )
     pair.update(vx=np.array([1.0, -1.0]), vy=np.array([0.2, 0.0]), spin=np.array([3.0, 1.0]))
     lammps.write(pair, tmp_path)
-    for steps in (3000, 8000):  # in the collision and after it
+    for steps in (3000, 8000):  # during and after the collision
         theirs = lammps.run(pair, steps, tmp_path, 1)["energy"]
         # Round-off of 8,000 steps; LAMMPS writes 15 digits.
         assert on_grain_loop(pair, steps).kineticEnergyOnStep() == pytest.approx(theirs, rel=1e-9)

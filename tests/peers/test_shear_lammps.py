@@ -1,4 +1,4 @@
-"""Homogeneous shear against LAMMPS: friction, pressure and contacts of a cell that both deform, in steady flow."""
+"""Homogeneous shear against LAMMPS: friction, pressure and contacts in steady flow, in a cell that both codes deform."""
 
 import subprocess
 
@@ -15,7 +15,7 @@ from yade import O
 pytestmark = pytest.mark.skipif(lammps.available() is None, reason="LAMMPS is not installed (Debian's package lammps)")
 
 SIDE, SPACING, RATE, DT, MU, PHI = 12, 1.12, 1.0, 1e-4, 0.4, 0.77
-SETTLE, STEPS, EVERY = 30_000, 80_000, 20  # three strains, then eight
+SETTLE, STEPS, EVERY = 30_000, 80_000, 20  # a strain of 3 to reach steady flow, then one of 8
 K_N, K_T, GAMMA = 5e5, 6e5, 1000.0
 
 INPUT = """
@@ -58,13 +58,13 @@ def flowing():
 
 
 def write_data(folder):
-    """Write the present disks as LAMMPS has them: those outside of the cell in y as the image inside, with its velocity."""
+    """Write the present disks for LAMMPS: those outside of the cell in y as their image inside, with the image's velocity."""
     cell = O.cell.hSize
     width, height, tilt = (
         cell[0][0],
         cell[1][1],
         (cell[0][1] + DT * RATE * cell[1][1]) % cell[0][0],
-    )  # at the bodies' step
+    )  # at the step of the bodies
     tilt -= width * (tilt > width / 2)
     atoms, motion = [], []
     for k, body in enumerate(O.bodies):
@@ -81,7 +81,7 @@ def write_data(folder):
 
 
 def stresses_of_lammps(folder):
-    """Return (tau, p) (n,) by contacts alone, from the present state on."""
+    """Return (tau, p) (n,) of the contact stress in LAMMPS, starting from the present state."""
     write_data(folder)
     numbers = dict(k_n=K_N, k_t=K_T, gamma=GAMMA, mu=MU, rate=RATE, dt=DT)
     (folder / "in.shear").write_text(INPUT.format(**numbers, steps=STEPS, every=EVERY))
@@ -92,7 +92,7 @@ def stresses_of_lammps(folder):
 
 
 def stresses_of_grain_loop(drive):
-    """Return the same of GrainLoop, by ShearDrive's measures."""
+    """Return the same from GrainLoop, by ShearDrive's measures."""
     rows = []
     for _ in range(STEPS // EVERY):
         drive.clear()
@@ -102,7 +102,7 @@ def stresses_of_grain_loop(drive):
 
 
 def test_friction_and_pressure_of_a_steady_shear(tmp_path):
-    """Chaos parts the two within a strain; means over eight strains must agree within two errors of the difference."""
+    """By chaos the two differ after a strain of 1; means over a strain of 8 must agree within two errors of the difference."""
     drive = flowing()
     their_tau, their_p = stresses_of_lammps(tmp_path)
     tau, p = stresses_of_grain_loop(drive)

@@ -2,13 +2,13 @@
 
 Both integrate by leapfrog, both have Hertz's law with restitution. Their tangential forces differ in three things:
 
-- the lever: LIGGGHTS takes half an overlap off the radius, we take the radius, as LAMMPS and the papers do. Contacts here are so
+- the lever: in LIGGGHTS the radius less half an overlap, here the radius, as in LAMMPS and papers. Contacts here are so
   stiff and slow that overlaps are a millionth of a radius.
 - how the spring turns with the contact: LIGGGHTS projects it on the new tangent plane, as LAMMPS' `gran/*`, which shortens it;
   LAMMPS' `granular` rescales it; we turn it by the rotation of the normal. Here contacts turn by a millionth of a radian.
-- slip: LIGGGHTS holds the spring to Coulomb's bound and adds the dashpot where that is not reached, so that its force may exceed
-  the bound; we hold both together to it, as the papers write it. What is compared are impacts that stick (with a friction so high
-  that the moments count for nothing in which F_n goes through zero), and impacts without dashpots that slide.
+- slip: LIGGGHTS limits the spring to Coulomb's bound and adds the dashpot below the bound, so that its force may exceed
+  the bound; we limit both together, as in the papers. Tests compare impacts that stick (with so much friction
+  that the moments in which F_n passes zero are negligible), and impacts without dashpots that slide.
 """
 
 import shutil
@@ -119,7 +119,7 @@ def on_plane(count, seed, slide):
 
 
 def compare(mine, theirs, grains):
-    """Velocities and surface speeds in units of the impact's, and how far these were changed at all."""
+    """Velocities and surface speeds over the impact's speed, and by how much the impact changed them."""
     radius = grains[:, 3:4]
     scale = np.hstack([np.full((len(grains), 3), 1 / SPEED), np.repeat(radius / SPEED, 3, axis=1)])
     changed = np.abs((mine[:, 3:] - grains[:, 5:]) * scale)
@@ -145,7 +145,7 @@ def test_impacts_end_as_in_liggghts(tmp_path, plane, restitution, friction, slid
 
 
 def test_the_comparison_can_fail(tmp_path):
-    # A friction wrong by a ten-thousandth is seen.
+    # An error of 1e-4 in the friction is detected.
     grains = pairs(4, seed=5, slide=2.0)
     theirs, mine = liggghts(tmp_path, grains, 1.0, 0.02, False), ours(grains, 1.0, 0.02 * 1.0001, False)
     assert compare(mine, theirs, grains)[0] > 1e-6
@@ -158,7 +158,7 @@ DIAMETER, DENSITY = 1.5e-3, 2500.0
 def contact_of(plane, restitution, normal_speed=0.0, tangential_speed=0.0):
     """F_n, |F_t| [N], overlap and spring [m] of a sphere at another one, or at a plane; v_n > 0 parts."""
     radius, overlap = DIAMETER / 2, 1e-6
-    new_scene(dt=1e-9)  # so short that no spring is to speak of
+    new_scene(dt=1e-9)  # so short that the spring is negligible
     spheres.sphere((0, 0, radius - overlap), radius, (tangential_speed, 0, normal_speed), density=DENSITY)
     if not plane:
         spheres.sphere((0, 0, -radius), radius, density=DENSITY)
@@ -179,7 +179,7 @@ def contact_of(plane, restitution, normal_speed=0.0, tangential_speed=0.0):
     ids=["two grains", "grain and cylinder"],
 )
 def test_table_1_of_guillard_and_others(plane, k_n, k_t, gamma_n, gamma_t):
-    """Numbers as printed: [N m^-3/2] to half a thousand, [kg s^-1 m^-1/4] to half a hundredth."""
+    """The numbers that the paper prints: [N m^-3/2] to half a thousand, [kg s^-1 m^-1/4] to half a hundredth."""
     normal, tangential, delta, slip = contact_of(plane, 1.0, tangential_speed=1e-3)
     assert normal / delta**1.5 == pytest.approx(k_n, abs=500)
     assert tangential / (delta**0.5 * slip) == pytest.approx(k_t, abs=500)

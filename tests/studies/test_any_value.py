@@ -1,4 +1,4 @@
-"""Every key of every study with values that no run can be made of: one line that refuses them, or a check that passes."""
+"""Every key of every study with extreme and wrong values: they are refused in one line, or they pass all checks."""
 
 import math
 from pathlib import Path
@@ -73,7 +73,7 @@ WORDS = [
 
 
 def outcome(study, *arguments):
-    """Return "accepted" or "refused" for a study's arguments; fails for any answer that is not one printable line."""
+    """Return "accepted" or "refused" for a study's arguments; fails if the message is not one printable line."""
     declared = STUDIES[study]
     try:
         p = parse(declared, arguments, environment={})
@@ -96,7 +96,7 @@ def bounds(field):
 
 
 def values_for(field):
-    """Return texts to try for a field: sizes of either sign, bounds, what is no number, words."""
+    """Return texts to try for a field: numbers of both signs, bounds, texts that are no numbers, words."""
     if plain_type(field) in (int, float):
         return [*SIZES, *(f"-{size}" for size in SIZES), *bounds(field), *NO_NUMBERS, "auto"]
     return [*WORDS, *choices(field), *SIZES]

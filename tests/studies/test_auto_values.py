@@ -1,4 +1,4 @@
-"""Values that follow from their companions: the lid that stands for the bed left out, the travel, and where each is shown."""
+"""Values that follow from other keys: the lid that replaces a part of the bed, the travel, and where they are shown."""
 
 import importlib
 import json
@@ -33,12 +33,14 @@ def parsed(name, *arguments):
         (["height=195", "depth=120"], 0),
         (["depth=50", "lid_pressure=7"], 7),
         (["scale=paper"], 0),
-        (["scale=smoke"], 0),  # quick, and said at its start
+        (["scale=smoke"], 0),  # said at the start of the run
     ],
 )
 def test_the_lid_stands_for_the_bed_that_is_left_out(arguments, load):
     p = parsed("wiggle_triangle", *arguments)
-    assert p.lid_load == load == p.taken()["lid_pressure"]  # to the last bit: digests and cached beds depend on it
+    assert (
+        p.lid_load == load == p.taken()["lid_pressure"]
+    )  # to the last bit, because digests and cached beds depend on it
     if load and p.lid_pressure is None:
         assert lid.weight_of_bed(p.depth) + p.lid_load == pytest.approx(0.84 * 105, rel=1e-15)
 

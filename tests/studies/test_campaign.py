@@ -1,4 +1,4 @@
-"""A small campaign under the real Snakemake and `yade`: nothing twice, failures told, killed and interrupted runs resumed."""
+"""A small campaign under the real Snakemake and `yade`: no run is made twice, failures are reported, stopped runs are resumed."""
 
 import os
 import shutil
@@ -36,7 +36,7 @@ class Place:
         return subprocess.Popen(command, cwd=self.path, env=self.environment, **pipes)
 
     def run(self, sweeps, *options):
-        """Run a campaign; return its exit code and what it said."""
+        """Run a campaign; return its exit code and its output."""
         process = self.start(sweeps, *options)
         _, words = process.communicate(timeout=120)
         return process.returncode, words

@@ -1,4 +1,4 @@
-"""Channels of the Magnus study: area fraction, walls, the body's place, distribution of diameters, rest, and what is refused."""
+"""Channels of the Magnus study: area fraction, walls, the body's position, diameters, grains at rest, and refused values."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from graindrive.scenes.material import HertzHistoryMaterial
 
 @pytest.fixture(autouse=True)
 def cache(monkeypatch, tmp_path_factory):
-    """One cache for the whole file: dense channels are the costly ones."""
+    """One cache for the whole file, because dense channels take long to make."""
     monkeypatch.setenv("GRAINDRIVE_CACHE", str(tmp_path_factory.getbasetemp() / "channels"))
 
 
@@ -41,19 +41,19 @@ def recipe(**changes):
 @pytest.mark.parametrize("phi", [0.05, 0.352, 0.49, 0.585, 0.78, 0.815])
 def test_area_fraction_is_reached_and_nothing_overlaps(phi):
     made = channel.channel(recipe(phi=phi))
-    # Area between the walls' centre lines without 30 half disks at either wall, and without the body.
+    # The area between the walls' centre lines, less 30 half disks at each wall and the body.
     free = 30 * 23 - 30 * np.pi / 4 - np.pi * 4
     assert np.sum(np.pi * made["r"] ** 2) / free == pytest.approx(phi, abs=1e-3)
     assert made["phi"] == pytest.approx(np.sum(np.pi * made["r"] ** 2) / free, rel=1e-12)
     assert made["deepest_overlap"] < (
         1e-3 if phi > 0.5 else 1e-12
-    )  # touching grains of a compressed one rest at a few 1e-4 R
+    )  # in a compressed channel grains touch with overlaps of some 1e-4 R
     body = np.hypot(made["x"] - 15, made["y"]) - made["r"] - 2
     assert body.min() > -1e-3
     wall = (np.arange(30) + 0.5, 11.5)
     gaps = np.hypot(made["x"][:, None] - wall[0], np.abs(made["y"])[:, None] - wall[1]) - made["r"][:, None] - 0.5
     assert gaps.min() > -1e-3
-    assert np.abs(made["y"]).max() < 11.5  # nothing slipped between the wall's disks
+    assert np.abs(made["y"]).max() < 11.5  # no grain is between the wall's disks
 
 
 def test_diameters_are_uniform():
@@ -68,7 +68,9 @@ def test_a_compressed_channel_is_as_dense_at_the_walls_as_in_the_middle():
     made = channel.channel(recipe(phi=0.815))
     third = np.abs(made["y"]) < 11 / 2
     inner = np.sum(np.pi * made["r"][third] ** 2) / (30 * 11 - np.pi * 4)
-    assert inner == pytest.approx(0.815, abs=0.04)  # a band's edges cut through 60 grains: a few per cent of its area
+    assert inner == pytest.approx(
+        0.815, abs=0.04
+    )  # the edges of a band cut through 60 grains: a few percent of its area
 
 
 def test_thinning_keeps_places_and_takes_grains_of_all_sizes_everywhere():

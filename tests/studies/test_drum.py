@@ -1,4 +1,4 @@
-"""The drum study, shrunk: its balance of torques, its layer and its static part, both loops, resuming, and what it refuses."""
+"""The drum study at small size: balance of torques, flowing layer and static part, both loops, resuming, refused values."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ SHORT = {**TINY, "start_turn": 2, "turn": 2}
 
 @pytest.fixture(scope="module")
 def turned(tmp_path_factory):
-    """Folder of a run of the shrunken study, once for the tests that look at it."""
+    """Folder of a run of the small study, made once for all tests that read it."""
     return tmp_path_factory.mktemp("turned") / "run"
 
 
@@ -30,7 +30,7 @@ def run(drum, turned):
 
 def test_the_bed_turns_with_the_drum_until_it_flows(run):
     turn, angle = run.series["turn"], run.series["centre_angle"]
-    # Before the surface yields, at some 20 degrees, the bed is carried along as it is; from 5 degrees to 12.
+    # Before the surface yields, at some 20 degrees, the bed turns with the drum; compared from 5 to 12 degrees.
     assert np.interp(12, turn, angle) - np.interp(5, turn, angle) == pytest.approx(7, abs=0.7)
 
 
@@ -40,7 +40,7 @@ def test_the_drive_bears_the_lever_of_the_weight(run):
     t, mass = run.series["t"], np.pi * np.sum(run.frame().grains["r"] ** 2)
     lever = np.trapz(mass * run.series["centre_x"][steady], t[steady])
     given = np.diff(run.series["work"][steady][[0, -1]])[0] / run.parameters["angular_velocity"]
-    # angular momentum: at most M (D/2)^2 Omega/2 of rigid rotation, and that of the layer, as much
+    # angular momentum: at most M (D/2)^2 Omega/2 of rigid rotation, and as much of the layer
     change = mass * 12**2 * run.parameters["angular_velocity"]
     assert abs(given - lever) < change < 0.15 * lever
     assert run.summary["torque"] == pytest.approx(-lever / np.ptp(t[steady]), rel=0.15)
@@ -49,7 +49,9 @@ def test_the_drive_bears_the_lever_of_the_weight(run):
 def test_a_layer_flows_down_a_bed_that_turns(run):
     found = run.summary
     assert found["steady"] == 1 and found["froude"] == 1e-2
-    assert 15 < found["surface_angle_deg"] < 35  # of disks of mu = 0.5 in a small drum; errors are some degrees
+    assert (
+        15 < found["surface_angle_deg"] < 35
+    )  # usual for disks with mu = 0.5 in a small drum; errors are some degrees
     assert 0.05 < found["thickness_over_diameter"] < 0.25
     assert 0.75 < found["packing_fraction"] < 0.87  # loose and close random packing of disks, 0.77 and 0.84
     assert found["rigid_deviation"] < 0.2
@@ -110,7 +112,7 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(drum, tmp_path, monkey
         carry_out(drum, tmp_path / "parts", **SHORT, checkpoint_seconds=0)
     monkeypatch.setattr(yade_march, "advance", advance)
     carry_out(drum, tmp_path / "parts", **SHORT, resume=True)
-    assert len(whole.series["t"]) > 60  # so that the averages had begun
+    assert len(whole.series["t"]) > 60  # so that averaging had begun
     assert_same(tmp_path / "whole", tmp_path / "parts")
 
 
@@ -118,7 +120,7 @@ def test_the_paper_s_numbers_are_taken(drum):
     for diameter, grains, wall in ((150, 7700, 475), (300, 30600, 632), (450, 69200, 946)):
         p = drum.DrumParameters(drum_diameter=diameter)
         assert (p.count, p.wall_count) == (grains, wall)
-        # without a speed that of the paper's Fig. 2, at equal Froude number
+        # without a given speed that of the paper's Fig. 2, at equal Froude number
         assert p.omega == pytest.approx(6.28e-3 * np.sqrt(150 / diameter), rel=1e-15)
     small = drum.DrumParameters(drum_diameter=75, filling=0.25)
     # half of a half: 0.25 pi/4 75^2 of the area at 0.828, of disks of 1.2133 pi/4 on average

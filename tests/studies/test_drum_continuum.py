@@ -1,4 +1,4 @@
-"""The drum study's continuum on a coarse grid: surface, layer, static part, kill and resume, both models, extremes, refusals."""
+"""The drum study's continuum on a coarse grid: surface, layer, static part, kill and resume, both models, extremes, bad input."""
 
 import os
 import signal
@@ -29,7 +29,7 @@ SLOW, FAST = (float(np.degrees(np.arctan(mu))) for mu in (0.246, 0.401))  # angl
 
 @pytest.fixture(scope="module")
 def turned(tmp_path_factory):
-    """Folder of the coarse run, once for the tests that look at it."""
+    """Folder of the coarse run, made once for all tests that read it."""
     return tmp_path_factory.mktemp("turned") / "run"
 
 
@@ -42,10 +42,12 @@ def run(drum, turned):
 def test_a_layer_flows_down_a_bed_that_turns(run):
     found = run.summary
     assert run.state == "complete" and found["continuum_steady"] == 1
-    # The bed slopes by the friction of its layer, between mu_s and mu_2; walls and the round bed add up to some degrees.
+    # The slope follows from the friction of the layer, between mu_s and mu_2; walls and the round bed add some degrees.
     assert SLOW < found["surface_angle_deg"] < FAST + 5
-    assert found["layer_over_diameter"] == pytest.approx(0.11 + 1.2 * 0.02, abs=0.04)  # the paper's; a cell is 0.033
-    assert found["rigid_deviation"] < 0.05  # of Omega z, as for the paper's drums; 0.015 is usual
+    assert found["layer_over_diameter"] == pytest.approx(
+        0.11 + 1.2 * 0.02, abs=0.04
+    )  # the value of the paper; a cell is 0.033
+    assert found["rigid_deviation"] < 0.05  # relative to Omega z, as for the paper's drums; 0.015 is usual
     assert abs(found["flow_balance"]) < 0.15
     assert found["flow_down"] > 0 > found["flow_up"]
     assert abs(found["continuum_area_drift"]) < 1e-10
@@ -64,9 +66,9 @@ def test_the_summary_follows_from_the_stored_fields(run):
 def test_the_torque_is_that_of_half_a_disk_at_its_slope(run):
     """M = -(2/3) R^3 times the bed's density and the sine of the slope: half a disk's area times 4R/3pi, the whole drum's."""
     slope = run.summary["centre_angle"]
-    assert slope == pytest.approx(run.summary["surface_angle_deg"], abs=3)  # the surface is no straight line
+    assert slope == pytest.approx(run.summary["surface_angle_deg"], abs=3)  # the surface is not a straight line
     half_disk = 2 / 3 * (run.parameters["drum_diameter"] / 2) ** 3 * BED_FRACTION
-    # The surface's curve and cells of a thirtieth of D: some percent. Without the wall's transition it would be a third less.
+    # The curved surface and cells of D/30 give errors of some percent. Without the wall's transition M would be a third less.
     assert run.summary["torque"] == pytest.approx(-half_disk * np.sin(np.radians(slope)), rel=0.06)
     assert 0 < run.summary["centre_angle_err"] < 3
 
@@ -77,14 +79,14 @@ def test_the_bed_turns_with_the_drum_until_it_flows(run):
     turn, angle = rows["turn"], rows["centre_angle"]
     assert np.interp(8, turn, angle) - np.interp(2, turn, angle) == pytest.approx(
         6, abs=0.3
-    )  # the layer yields by mu_s
+    )  # the layer yields at mu_s
     assert (
         np.ptp(angle[turn > turn[-1] - 25]) < 5
-    )  # of 25 that the drum turned: the first slide still sways by some degrees
+    )  # of the 25 by which the drum turned; after the first slide the angle still oscillates by some degrees
 
 
 def test_the_bed_s_weight_presses_on_its_bottom(run):
-    """p below the axis is about that of the bed above it, rho g cos(angle) times the depth, less what the walls bear."""
+    """p below the axis is about that of the bed above, rho g cos(angle) times the depth, less the part that the walls bear."""
     stored, D = run.group("fields/continuum"), run.parameters["drum_diameter"]
     column, row = np.abs(stored["x"]).argmin(), np.abs(stored["y"] + 0.35 * D).argmin()
     pressure = stored["pressure"].mean(axis=0)[row, column]
@@ -119,12 +121,14 @@ def test_paraview_s_files_hold_the_fields_in_the_frame_of_the_grains(run):
 
 
 def test_pictures_of_the_flow_are_even_in_time_and_show_the_bed_of_their_moment(drum, whole):
-    """Their centre of mass is that of the rows, which stand a degree of turn apart or less; the last is of the end."""
+    """Frames have the centre of mass of the rows, which are at most a degree of turn apart; the last frame is that of the end."""
     run = Run(whole) if whole.exists() else carry_out(drum, whole, **QUICK)
     frames, rows, p = FlowFrames(run), run.group("continuum"), run.parameters
     assert len(frames) == 5
     planned = np.radians(drum_continuum.START_TURN + drum_continuum.WINDOW) / p["angular_velocity"]
-    assert np.diff([frame.t for frame in frames]) == pytest.approx(planned / 5, rel=0.05)  # to whole steps and rows
+    assert np.diff([frame.t for frame in frames]) == pytest.approx(
+        planned / 5, rel=0.05
+    )  # rounded to whole steps and rows
     assert frames[4].t <= rows["t"][-1]
     for frame in frames:
         weight = frame.arrays["area_fraction"].astype(float)
@@ -143,7 +147,7 @@ def test_the_figure_shows_where_the_equations_are_ill_posed(run):
     stored = run.group("fields/continuum")
     bed = stored["area_fraction"].mean(axis=0) / BED_FRACTION
     assert share.shape == (len(y), len(x)) and np.nanmax(share) <= 1
-    # of the grains' area as summary.json says; there by the last state's bed, here by the mean one
+    # summary.json has the area of the last state's bed over that of the grains; here the mean bed is used
     assert np.nansum(share * bed) / bed.sum() == pytest.approx(run.summary["ill_posed_share"], rel=0.05)
 
 
@@ -151,7 +155,7 @@ def test_the_figure_shows_where_the_equations_are_ill_posed(run):
 
 
 def stop_after(monkeypatch, calls):
-    """Have the continuum's march be interrupted at the start of that call."""
+    """Interrupt the continuum's march at the start of that call."""
     advance, count = FlowMarch.advance, iter(range(10**6))
 
     def stopped(self, steps):
@@ -165,11 +169,11 @@ def stop_after(monkeypatch, calls):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """Folder of a quick run that nothing interrupted."""
+    """Folder of a quick run without interruption."""
     return tmp_path_factory.mktemp("whole") / "run"
 
 
-@pytest.mark.parametrize("calls", [20, 75])  # before and within the averages
+@pytest.mark.parametrize("calls", [20, 75])  # before and during averaging
 def test_an_interrupted_run_goes_on_as_if_it_had_not_been(drum, whole, tmp_path, monkeypatch, calls):
     if not whole.exists():
         carry_out(drum, whole, **QUICK)
@@ -233,7 +237,7 @@ def test_both_models_leave_their_flows_side_by_side_and_a_resumed_run_keeps_the_
     assert 5 < found["continuum_surface_angle_deg"] < 40
     times = [whole.frame(k).t for k in range(len(whole.frame_names))]
     seen = [frame.t for frame in FlowFrames(whole)]
-    assert len(seen) == len(times) == 5  # the continuum's run is longer: its pictures are of the grains' times
+    assert len(seen) == len(times) == 5  # the continuum's run is longer; frames are taken at the grains' times
     assert seen == pytest.approx(times, abs=0.5 * QUICK["continuum_dt"] + 1e-9)
     assert whole.provenance["n_grains"] == drum.DrumParameters(**keys).count
     go_on, built = stop_after(monkeypatch, 50), drum.build
@@ -252,14 +256,14 @@ def test_both_models_leave_their_flows_side_by_side_and_a_resumed_run_keeps_the_
 @pytest.mark.parametrize(
     "keys, low, high",
     [
-        # The surface of a thin bed slopes by its friction; that of a nearly full drum cannot be seen in the centre of mass.
+        # The slope of a thin bed's surface follows from friction; in a nearly full drum the centre of mass does not show the slope.
         (dict(filling=0.2), SLOW, FAST + 3),
         (dict(filling=0.9), 0, 60),
-        # Fluid of a small viscosity slopes less than grains; a large one adds its own resistance.
+        # A fluid of small viscosity slopes less than grains; a large viscosity adds its own resistance.
         (dict(largest_viscosity=1e2, continuum_dt=0.02), 5, FAST + 3),
         (dict(largest_viscosity=1e6), SLOW, FAST + 6),
         (dict(rheology="regularised"), SLOW, FAST + 3),
-        (dict(froude=0.9, continuum_dt=0.02), FAST, 90),  # a bed that is nearly centrifuged is carried up far
+        (dict(froude=0.9, continuum_dt=0.02), FAST, 90),  # a bed that is nearly centrifuged rises far
     ],
 )
 def test_an_extreme_flow_keeps_its_area_and_slopes_as_it_must(drum, keys, low, high):
@@ -271,7 +275,7 @@ def test_an_extreme_flow_keeps_its_area_and_slopes_as_it_must(drum, keys, low, h
     row = drum_continuum.row_of(p, march)
     assert low < row["centre_angle"] < high
     assert flow.area == pytest.approx(area, rel=1e-12)
-    assert flow.fraction.min() > -1e-12 and flow.fraction.max() < 1 + 1e-6  # what the projection's tolerance leaves
+    assert flow.fraction.min() > -1e-12 and flow.fraction.max() < 1 + 1e-6  # the tolerance of the projection
     assert np.isfinite(flow.pressure).all()
     assert p.rheology == "mu_i" or not flow.ill_posed.any()
 
@@ -284,7 +288,7 @@ def test_a_slow_drum_carries_its_bed_along_as_it_is(drum):
     x, y = drum_continuum.grid_of(p)
     deep = (flow.fraction > 0.999) & (flow.openness >= 1) & (y[:, None] < -0.1 * p.drum_diameter)
     rigid = p.omega * np.stack(np.broadcast_arrays(-y[:, None], x[None, :]), axis=-1)
-    # what is left of the start, a bed at rest that the wall takes along
+    # the decay of the start, a bed at rest that the wall sets in motion
     assert np.abs(flow.velocity - rigid)[deep].max() < 0.1 * p.omega * p.drum_diameter / 2
 
 

@@ -1,4 +1,4 @@
-"""Extremes that are quick: each case's number against its closed form, the closed forms themselves, the study and its report."""
+"""The quick cases of extremes: each number against its closed form, the closed forms themselves, the study and its report."""
 
 import importlib
 import json
@@ -71,7 +71,7 @@ def test_a_spun_up_fluid_begins_at_rest_and_ends_turning_as_a_whole():
     inside = np.array([0.1, 0.4, 0.7])
     assert fluids.spun_up(inside, 2e-3) == pytest.approx(np.zeros(3), abs=1e-3)  # 0.3 is 3.4 widths of the layer
     assert fluids.spun_up(inside, 2.0) == pytest.approx(inside, abs=1e-9)  # exp(-14.7 * 2)
-    # Beside the wall, early: that of a plane wall, erfc(depth/(2 sqrt(time))), but for the curvature, 2 % here.
+    # Near the wall at early times: the solution for a plane wall, erfc(depth/(2 sqrt(time))); the curvature changes it by 2 %.
     assert fluids.spun_up(np.array([0.98]), 1e-3)[0] == pytest.approx(math.erfc(0.02 / (2 * math.sqrt(1e-3))), rel=0.02)
 
 
@@ -89,7 +89,7 @@ GRAINS = SpringDashpotMaterial(1e6, 1e6, 0.9, 0.5, 1.0)
 
 
 def warmth(share_of_pair):
-    """Return the largest speed of a damped frictional crystal at rest but for noise of 1e-9, after 20,000 steps."""
+    """Return the largest speed of a damped frictional crystal after 20,000 steps, from rest with a noise of 1e-9."""
     dt = share_of_pair * GRAINS.critical_time_step(0.5, 0.1)
     law = spring(GRAINS.normal_stiffness, GRAINS.restitution, GRAINS.friction, 1.0)
     ids, _ = steps.crystal(outcome.Setting(), 2, dt, law)
@@ -101,7 +101,7 @@ def test_a_bed_at_rest_warms_up_above_the_step_of_its_contacts_and_checks_refuse
     pair, bed = GRAINS.critical_time_step(0.5, 0.1), GRAINS.bed_time_step(0.5)
     assert bed / pair < 1 / math.sqrt(6) + 0.05  # undamped 1/sqrt(6), overdamped 1/6
     assert warmth(bed / pair) < 1e-8
-    assert warmth(0.6) > 1e-2  # below the pair's step, and no guard says a word
+    assert warmth(0.6) > 1e-2  # below the pair's critical step, and no guard detects it
     assert scene.check_time_step(0.999 * bed, GRAINS, 0.5, 0.1) == pytest.approx(0.999 * bed / pair)
     with pytest.raises(UsageError, match="a grain with six contacts may be unstable: .* lower dt_factor, to 0.* times"):
         scene.check_time_step(1.01 * bed, GRAINS, 0.5, 0.1)
@@ -111,7 +111,7 @@ def test_a_sheared_cell_refuses_that_step_too():
     numbers = dict(grains=100, stiffness=2e5, friction=0.5, restitution=0.92, shear_rate=1.0, pressure=25.0)
     cell = shear_cell.ShearCell(**numbers, area_fraction=0.0, every=5, seed=1)
     pair, bed = cell.critical_time_step(), cell.critical_time_step(6)
-    # Two smallest disks, computed here anew: k_t = 2/7 k_n with m/6 swings slower than k_n with m/2.
+    # The critical step of the two smallest disks, computed independently from k_n with m/2 and k_t = 2/7 k_n with m/6.
     mass = math.pi / 4
     eta = -2 * math.log(0.92) * math.sqrt(mass / 2 * 2e5 * mass / (math.pi**2 + math.log(0.92) ** 2))
     assert pair == pytest.approx(

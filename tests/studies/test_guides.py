@@ -1,4 +1,4 @@
-"""The pages of studies/guides, followed word by word in an empty folder."""
+"""The pages of studies/guides, followed exactly in an empty folder."""
 
 import glob
 import json
@@ -23,7 +23,7 @@ FLAGS = "-std=c++17 -O0 -Wall -Wextra -Werror -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN
 WITH_YADE = "-fPIC -Wno-psabi -DBOOST_ALLOW_DEPRECATED_HEADERS -DBOOST_BIND_GLOBAL_PLACEHOLDERS".split()
 OBJECTS = (
     TOP / "build" / "engines" / "CMakeFiles" / "_engines.dir" / "seam"
-)  # where CMake has compiled what engines need
+)  # where CMake has compiled what engines use
 
 
 def test_the_index_names_every_page_and_every_page_says_what_to_look_at():
@@ -69,7 +69,7 @@ def test_a_new_observable_stands_in_a_report_without_and_with_a_claim(tmp_path):
     assert (tmp_path / "walk/figures/claims-growth.png").exists()
 
 
-# What Slurm does, as far as the page's profile asks for it: jobs run at once, and are done when sbatch returns.
+# A stand-in for the parts of Slurm that the page's profile uses: jobs run at once, and have ended when sbatch returns.
 SLURM = {
     "sbatch": 'echo "$@" >>"$HOME/submitted"; bash "${@: -1}" >/dev/null 2>&1; echo $$',
     "sacct": "echo '  COMPLETED '",
@@ -96,7 +96,7 @@ def test_a_campaign_goes_through_a_slurm_profile(tmp_path):
 
 
 def compiled(place, *arguments):
-    """Compile with the headers of `place` before those of the checkout; what the compiler says is the failure's text."""
+    """Compile with the headers of `place` before those of the checkout; a failure shows the compiler's output."""
     headers = ["-I", str(place), "-I", str(TOP), "-isystem", "/usr/include/eigen3"]
     done = subprocess.run(["g++", *FLAGS, *headers, *map(str, arguments)], cwd=place, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -115,7 +115,7 @@ def test_a_new_law_is_known_to_registry_spheres_and_functors(tmp_path):
     compiled(tmp_path, *WITH_YADE, "-isystem", python, "-fsyntax-only", functors)
 
 
-# The binding as in drives_py.cpp, alone in a module, with the source beside it: the headers are read once.
+# The binding as in drives_py.cpp, in a module of its own together with the source, so that headers are compiled once.
 MODULE = """
 #include "engines/drives/Tether.cpp"
 #include "engines/seam/bind.hpp"

@@ -1,4 +1,4 @@
-"""The lift study, shrunk: closed forms of what it measures, the bed at rest, symmetries, both loops, and bad input."""
+"""The lift study at small size: closed forms of its measurements, the bed at rest, symmetries, both loops, and bad input."""
 
 import json
 from dataclasses import replace
@@ -72,7 +72,7 @@ def forces_of_steps(binner, base, steps):
 
 
 def test_the_grains_are_those_of_table_1(lift):
-    """Stiffness and damping over sqrt(delta) and delta^(1/4), as printed, of two grains and of a grain and the cylinder."""
+    """Stiffness over sqrt(delta) and damping over delta^(1/4), as in the paper, of two grains and of a grain and the cylinder."""
     grains = lift.material(parameters(lift))
     delta = 0.01 * lift.D / 2
     printed = {grains.terms: (81e3, 86e3, 0.15, 0.13), grains.terms_on_a_plane: (114e3, 122e3, 0.26, 0.21)}
@@ -84,7 +84,7 @@ def test_the_grains_are_those_of_table_1(lift):
             at["dashpot"] / delta**0.25,
             at["tangential_dashpot"] / delta**0.25,
         )
-        # Two digits are printed; the paper's gamma_t of the cylinder, 0.2150, is rounded down.
+        # The paper prints two digits; its gamma_t of the cylinder, 0.2150, is rounded down.
         assert np.allclose(found, numbers, rtol=0.03)
 
 
@@ -105,7 +105,7 @@ SCENE = forces.Scene(
 
 
 def made_up_series(drag, lift, normal, tangential, blocks=256):
-    """A steady series with a little white noise of its own, of mean zero."""
+    """A steady series with some white noise of mean zero."""
     noise = np.random.default_rng(5).normal(0, 1e-3, blocks)
     noise -= noise.mean()
     series = {name: np.zeros(blocks) for name in forces.UNITS}
@@ -116,7 +116,7 @@ def made_up_series(drag, lift, normal, tangential, blocks=256):
 def test_coefficients_are_what_their_names_say():
     """rho g h~ D L = 1500 * 10 * 0.1 * 2e-3 * 5e-3 N, and the buoyancy rho g pi D^2 L/4."""
     summary, _ = forces.steady_state(made_up_series(0.15, 2.3562e-3, np.ones(64), np.zeros(64)), SCENE)
-    # What the window leaves out keeps the noise's mean from being zero: 1e-3/sqrt(200).
+    # Within the window the mean of the noise is not zero, but of order 1e-3/sqrt(200).
     assert summary["drag_coefficient"] == pytest.approx(10, rel=3e-4)
     assert summary["lift_over_buoyancy"] == pytest.approx(2.3562e-3 / (15000 * np.pi * 1e-6 * 5e-3), rel=3e-4)
     assert 0 < summary["drag_coefficient_err"] < 10 * 1e-3
@@ -142,7 +142,7 @@ def test_stress_by_angle_is_force_over_the_share_of_the_mantle():
 
 
 def test_the_fraction_by_height_is_that_of_spheres():
-    """One sphere of radius 1 at 0: slabs of [-1, 0] and [0, 1/2] hold 2 pi/3 and pi(1/2 - 1/24); far away there is nothing."""
+    """One sphere of radius 1 at 0: slabs of [-1, 0] and [0, 1/2] hold 2 pi/3 and pi(1/2 - 1/24); slabs far away are empty."""
     found = sphere_bed.fraction_by_height(np.array([0.0]), np.array([1.0]), np.array([-3, -1, 0, 0.5, 1, 2]), 4.0)
     expected = np.array([0, 2 * np.pi / 3, np.pi * (0.5 - 1 / 24), 2 * np.pi / 3 - np.pi * (0.5 - 1 / 24), 0])
     assert np.allclose(found, expected / 4 / np.array([2, 1, 0.5, 0.5, 1]), rtol=1e-12)
@@ -162,7 +162,7 @@ def a_lattice(lift, bulk_gravity):
 def test_the_effective_depth_is_bed_and_lid_over_the_bulk_density(lift):
     """Layers at 1 to 40 d, axis at 20 d: 20.5 layers are above it. h~ = h + (pi d/6) rho*/rho with rho = (pi/6) rho_g."""
     with_weight, without = a_lattice(lift, True), a_lattice(lift, False)
-    # Slabs cut layers: the fraction is that of whole layers within one in 26.
+    # The slabs' edges cut through layers: the fraction differs by up to one layer in 26.
     fraction = with_weight["bulk_fraction"]
     assert fraction == pytest.approx(np.pi / 6, rel=0.04)
     lid_part = np.pi / 6 * 60 / fraction
@@ -183,7 +183,7 @@ def test_a_bed_at_rest_presses_on_base_and_body_with_its_weight_and_does_not_dra
     weight = stage["bed_weight"] + stage["lid_weight"]
     assert -(body + below)[2] == pytest.approx(weight, rel=1e-3)
     seen = lift.scene_of(p, lift.body_of(p), stage)
-    # Grains hold static forces; a cylinder that is dragged feels C_d = 10.
+    # Static forces in the bed remain; on a dragged cylinder C_d is 10.
     assert abs(body[0]) < 0.5 * seen.pressure * seen.area
     if keys == dict(lid_density=0):  # a lid is held along x
         assert abs(body[0] + below[0]) < 1e-3 * weight
@@ -198,15 +198,15 @@ def test_a_packing_has_no_grain_in_the_cylinder_or_far_into_another(lift):
     across = (rows["x"] - at[0] + p.width * lift.D / 2) % (p.width * lift.D) - p.width * lift.D / 2
     gap = np.hypot(across, rows["z"] - at[2]) - p.cylinder_diameter * lift.D / 2 - rows["r"]
     assert gap.min() > -0.05 * lift.D and gap.min() < 0.0
-    assert rows["z"].min() > 0.5 * lift.D  # nobody fell between the spheres of the base
-    assert 0.5 < stage["bulk_fraction"] < 0.68  # loose to dense
+    assert rows["z"].min() > 0.5 * lift.D  # no grain fell between the spheres of the base
+    assert 0.5 < stage["bulk_fraction"] < 0.68  # from loose to dense packing
 
 
 # ---- symmetries --------------------------------------------------------------------------------------------------
 
 
 def mirrored(bed, found):
-    """Mirror a bed at rest across the plane through the body's axis that x crosses; its springs are lost."""
+    """Mirror a bed at rest at the plane across x through the body's axis; its springs are lost."""
     there = {name: found[name] * [-1, 1, 1] + [bed.width, 0, 0] for name in ("x", "lid")}
     return peer_lift.without_springs(bed, {**found, **there})
 
@@ -223,16 +223,16 @@ def test_a_mirrored_bed_gives_mirrored_forces(lift):
 
 
 def test_body_and_base_are_pushed_against_each_other(lift, tmp_path):
-    """The base holds back the bed that the body drags along: what is not on the lid."""
+    """The base bears the drag of the body that the lid does not bear."""
     carry_out(lift, tmp_path / "run", lid_density=0, width=40, travel=12.0)
     found = summary_of(tmp_path / "run")
     assert found["drag"] > 0 and found["drag_on_base"] > 0
-    # A steady bed has no other support along x: the base bears the drag, within errors.
+    # A steady bed has no other support along x, so the base bears the drag within errors.
     assert abs(found["drag"] - found["drag_on_base"]) < 5 * (found["drag_err"] + found["drag_on_base_err"])
 
 
 def test_the_cylinder_may_stand_still_in_place_of_the_bed(lift, tmp_path, monkeypatch):
-    """Galilei: the first two tenths of d are the same to round-off, which grows with every collision."""
+    """Galilean invariance: over the first 0.2 d results are the same to round-off, which grows with every collision."""
     monkeypatch.setattr(lift, "BLOCK_TRAVEL", 0.1)
     bed = carry_out(lift, tmp_path / "bed")
     cylinder = carry_out(lift, tmp_path / "cylinder", frame="cylinder")
@@ -247,7 +247,7 @@ def test_the_cylinder_may_stand_still_in_place_of_the_bed(lift, tmp_path, monkey
 
 
 def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path, figures_drawn):
-    """A Gaussian of 8 degrees takes exp(-zeta^2/2) of the first harmonic, of which the force consists."""
+    """A Gaussian of 8 degrees multiplies the first harmonic, which gives the force, by exp(-zeta^2/2)."""
     carry_out(lift, tmp_path / "run")
     found = summary_of(tmp_path / "run")
     with h5py.File(tmp_path / "run/run.h5") as file:
@@ -258,7 +258,7 @@ def test_forces_by_angle_sum_to_the_force_on_the_body(lift, tmp_path, figures_dr
     drag = np.sum(normal * np.cos(theta) + tangential * np.sin(theta)) * share
     up = np.sum(normal * np.sin(theta) - tangential * np.cos(theta)) * share
     smoothed = np.exp(-(np.radians(8) ** 2) / 2)
-    assert drag == pytest.approx(found["drag"] * smoothed, rel=1e-3)  # 64 points stand for the integral
+    assert drag == pytest.approx(found["drag"] * smoothed, rel=1e-3)  # the integral is a sum over 64 points
     assert up == pytest.approx(found["lift"] * smoothed, abs=1e-3 * found["drag"])
     assert found["drag_coefficient"] > 0.5
     lift.STUDY.figure(tmp_path / "run")
@@ -328,7 +328,7 @@ def test_a_function_of_distance_from_a_file_is_a_body(lift, tmp_path):
 
 
 def test_an_outline_is_swept_along_y_with_its_y_up(lift, tmp_path):
-    """A right-angled wedge, flat below: its highest corner is behind."""
+    """A right-angled wedge with a flat lower side; its highest corner is at the rear."""
     (tmp_path / "wedge.csv").write_text("0, 0\n3, 0\n0, 1.5\n")
     body = dragged_body.of_shape(str(tmp_path / "wedge.csv"), 0, 5 * lift.D, lift.D)
     assert body.volume == pytest.approx(2.25 * 5 * lift.D**3)
@@ -419,7 +419,7 @@ def test_values_that_do_not_go_together_are_refused(lift, keys, reason):
 
 
 def test_a_bed_that_cannot_hold_the_drag_is_told_of(lift, capsys):
-    """C_d D P_axis = 10 * 2 d * P_0 against mu times what presses on base and lid: 16 d are too few, 80 d enough."""
+    """C_d D P_axis = 10 * 2 d * P_0 against mu times the load on base and lid: a width of 16 d is too small, 80 d is enough."""
     for width, told in ((16, True), (80, False)):
         weight = 1500 * 9.81 * 0.03 * width * lift.D * 5 * lift.D
         seen = forces.Scene(

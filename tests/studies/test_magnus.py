@@ -1,4 +1,4 @@
-"""The Magnus study, shrunk: symmetries of the forces, the sign of the lift, both loops, and its way of going on."""
+"""The Magnus study at small size: symmetries of the forces, the sign of the lift, both loops, and resuming."""
 
 import importlib
 import json
@@ -53,7 +53,7 @@ def summary_of(out):
 
 
 def change_packings(magnus, monkeypatch, change):
-    """Have the study see its packings as `change(x, y, r)` makes them."""
+    """Give the study packings that `change(x, y, r)` has changed."""
     made = magnus.packing
 
     def changed(p, body):
@@ -77,7 +77,7 @@ def test_lift_is_odd_in_the_spin_and_drag_even(magnus, monkeypatch, tmp_path):
     there = carry_out(magnus, tmp_path / "there", spin_ratio=2)
     change_packings(magnus, monkeypatch, mirrored)
     back = carry_out(magnus, tmp_path / "back", spin_ratio=-2)
-    # Bins are sorted in another order, so sums differ by round-off, which collisions let grow.
+    # Grains are sorted in another order, so sums differ by round-off, which collisions let grow.
     scale = np.abs(there["fx"]).max()
     assert scale > 1 and np.abs(there["fy"]).max() > 0.1 * scale
     assert np.abs(there["fx"] - back["fx"]).max() < 1e-9 * scale
@@ -106,7 +106,7 @@ def test_lift_points_against_omega_cross_v(magnus, tmp_path):
     found = summary_of(tmp_path / "run")
     assert found["lift"] > 3 * found["lift_err"] > 0
     assert found["slipping_share"] > 0.9
-    assert abs(found["lift_to_drag"] - found["model_kappa"]) < 0.05  # the model's only assumption is that all slip
+    assert abs(found["lift_to_drag"] - found["model_kappa"]) < 0.05  # the model assumes only that all contacts slip
     assert found["front_share"] > 0.9
 
 
@@ -167,7 +167,7 @@ def test_a_run_ends_when_lift_over_drag_is_good_enough(magnus, monkeypatch, tmp_
 
 @pytest.mark.parametrize("loop", ["grain", "yade"])
 def test_walls_under_pressure_push_the_grains_together(magnus, tmp_path, loop):
-    """Until grains are in the way, a wall of mass m_wall = N rho pi d^2/4 starts with the acceleration p L/m_wall."""
+    """Before grains hinder it, a wall of mass m_wall = N rho pi d^2/4 has the acceleration p L/m_wall."""
     from yade import O
 
     carry_out(magnus, tmp_path / "run", wall_pressure=5.0, travel=1.0, loop=loop)
@@ -183,7 +183,7 @@ def test_walls_under_pressure_push_the_grains_together(magnus, tmp_path, loop):
     assert phi > begun
     assert area / begun - area / phi == pytest.approx(
         width * sum(moved), rel=0.1
-    )  # less what they moved in the first block
+    )  # less their displacement in the first block
 
 
 def test_another_shape_is_driven_as_beads(magnus, tmp_path):

@@ -1,4 +1,4 @@
-"""Every name that a smoke run of a study leaves is explained in the table of names, with the unit that stands beside it."""
+"""The table of names explains every name in the files of a study's smoke run, with the unit that the file gives."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The guide's study, without YADE and without grains: progress, checkpoints, kill and resume, campaign, report, commands."""
+"""The guide's study, which needs neither YADE nor grains: progress, checkpoints, kill and resume, campaign, report, commands."""
 
 import json
 import math
@@ -22,7 +22,7 @@ from graindrive.study import loaded
 
 BUILT = next(folder for folder in sys.path if (Path(folder) / "graindrive").is_dir())
 KEYS = ["time=20", "damping=0.2", "checkpoint_seconds=0"]  # a checkpoint after every block of 100 steps
-# The study's file as a module whose march kills its process, or asks it to stop, before a step.
+# The study's file as a module whose march kills its process, or sends it a stop signal, before a step.
 STOPPED = """
 import os, sys
 from graindrive.commands import headless
@@ -70,7 +70,7 @@ def place(tmp_path):
 
 
 def environment(place, *also):
-    """Return an environment with the package and nothing of YADE on Python's path, and a cache of its own."""
+    """Return an environment with the package but without YADE on Python's path, and with a separate cache."""
     path = os.pathsep.join([BUILT, *map(str, also)])
     return {**os.environ, "PYTHONPATH": path, "XDG_CACHE_HOME": str(place / "cache"), "HOME": str(place)}
 
@@ -101,7 +101,7 @@ def test_a_run_without_yade_and_grains_leaves_a_run_folder(place):
     )
     series, summary = contents(place / "a")
     assert list(series["t"]) == pytest.approx(np.arange(0, 20.05, 0.1)) and summary["energy_left_unit"] == "-"
-    # In the mean over a cycle exp(-c t); within one the energy falls unevenly, by a part c of itself at most.
+    # The mean over a cycle falls as exp(-c t); within a cycle the energy departs from it by a relative c at most.
     assert summary["energy_left"] == pytest.approx(math.exp(-0.2 * 20), rel=0.2)
     assert (summary["steps"], summary["n_grains"], summary["particle_steps_per_second"]) == (20000, None, None)
     run = Run(place / "a")
@@ -150,7 +150,7 @@ def test_a_campaign_runs_it_in_plain_python_and_reports(place):
     assert done.returncode == 0, done.stderr
     assert list(pd.read_csv(place / "c/table.csv")["damping"]) == [0.1, 0.2]
     report = (place / "c/report.md").read_text()
-    # exp(-0.4) = 0.670; the tolerance is that of a cycle that is not whole.
+    # exp(-0.4) = 0.670; the tolerance is the effect of an incomplete cycle.
     assert "1 reproduced" in report and "core-seconds, 4e+03 steps, on " in report
     assert (place / "c/figures/c-decay.png").exists()
 
@@ -189,7 +189,7 @@ RUN = str(TOP / "scripts" / "run")
 
 
 def skip_where_it_would_build(command):
-    """Skip a call of scripts/run in a checkout that is not built, or built in part: it would build all of it first."""
+    """Skip a call of scripts/run in a checkout that is not completely built, because it would first build the rest."""
     if command == RUN:
         asked = subprocess.run(["ninja", "-C", str(TOP / "build"), "-n"], capture_output=True, text=True)
         if "no work to do" not in asked.stdout:

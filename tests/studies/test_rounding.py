@@ -1,4 +1,4 @@
-"""The rounding study: six kinds of numbers on one regular scene, how drift is read off, resuming, stopping, and refusals."""
+"""The rounding study: six kinds of numbers in one regular scene, how the drift is determined, resuming, stopping, bad input."""
 
 import importlib
 import json
@@ -30,7 +30,7 @@ def rounding(monkeypatch):
 
 @pytest.fixture(scope="module")
 def drifts(tmp_path_factory):
-    """{kind of numbers: its greatest distance from 150 digits} and the steps, of two wells for half a t_0."""
+    """{kind of numbers: largest distance from the run with 150 digits}, and the number of steps; two wells, half a t_0."""
     patch, place = pytest.MonkeyPatch(), tmp_path_factory.mktemp("rows")
     patch.syspath_prepend(str(STUDIES))
     study, rows = importlib.import_module("rounding"), {}
@@ -42,30 +42,30 @@ def drifts(tmp_path_factory):
     truth = rows[number_types.TRUTH]
     assert all((found.steps == truth.steps).all() for found in rows.values()) and len(truth.steps) == 4
     apart = {name: distances.distances(rows[name].place, truth.place).max() for name in study.COMPARED}
-    assert np.ptp(truth.places[..., 1]) > 1e-3  # they swing
+    assert np.ptp(truth.places[..., 1]) > 1e-3  # the grains oscillate
     return apart, study.steps_of(p)
 
 
 @pytest.mark.parametrize("name", ["float128", "longdouble", "yade_double", "double"])
 def test_each_kind_of_numbers_is_right_to_its_own_last_place_times_steps(drifts, name):
-    """A step rounds a place below 8 by half of 2^(3 - bits), and a force by less; wells do not amplify that."""
+    """A step has a round-off of half of 2^(3 - bits) in a position below 8, and less in a force; the wells do not amplify it."""
     apart, steps = drifts
     last_place = 2.0 ** (3 - number_types.TYPES[name].bits)
     assert last_place / 100 < apart[name] < steps * last_place
 
 
 def test_single_precision_is_worse_by_its_missing_bits(drifts):
-    """2^29 between the last places of float and double, of a branch of 1 d.
+    """The last digits of single and double precision differ by a factor of 2^29.
 
-    GrainLoop keeps places as double in both, rounded to 2^-50 at each of 513 steps: at random that makes double worse by up to
-    2^3 and the root of the steps, 2^4.5. Single is worse by the few operations of a contact.
+    GrainLoop keeps positions in double precision in both, with a round-off of 2^-50 in each of 513 steps. This makes double worse
+    by up to 2^3 times the root of the steps, 2^4.5, and the few operations of a contact make single worse.
     """
     apart, _ = drifts
     assert 2.0 ** (29 - 8) < apart["single"] / apart["double"] < 2.0 ** (29 + 3)
 
 
 def made_up(name, scene, file):
-    """Write rows in place of a program: grains that fly apart as 2^-bits exp(RATE t) from those of 150 digits."""
+    """Stand in for a program: write rows of grains that depart as 2^-bits exp(RATE t) from those with 150 digits."""
     moving = [disk for disk in scene["disks"] if not disk[4]]
     start = np.array(moving)[:, :2].ravel()
     rng = np.random.default_rng(len(name))
@@ -93,7 +93,7 @@ def test_rates_of_a_known_growth_and_averages_come_out(rounding, tmp_path, monke
     monkeypatch.setattr(number_types, "run", made_up)
     run = carry_out(rounding, tmp_path / "run")
     assert unexplained(run) == []
-    assert run.summary["lyapunov_rate_single"] == pytest.approx(RATE, rel=1e-6)  # digits of the made-up places
+    assert run.summary["lyapunov_rate_single"] == pytest.approx(RATE, rel=1e-6)  # digits of the made-up positions
     assert run.summary["lyapunov_rate_double"] == pytest.approx(RATE, rel=1e-6)
     error = run.summary["kinetic_energy_double_err"]
     assert run.summary["kinetic_energy_double"] == pytest.approx(1.0, abs=5 * error) and error < 0.1  # two unit normals

@@ -1,4 +1,4 @@
-"""The shear study, shrunk: what it holds and measures, both loops, its way of going on, and values that it refuses."""
+"""The shear study at small size: its controls and measurements, both loops, resuming, and refused values."""
 
 import importlib
 import json
@@ -40,7 +40,7 @@ def carry_out(shear, out, **changes):
 
 def test_the_pressure_is_reached_and_stresses_add_up(shear, tmp_path, figures_drawn):
     series, found = carry_out(shear, tmp_path / "run", strain=4.0, settle_strain=2.0, pressure=100.0)
-    assert found["mean_pressure"] == pytest.approx(100, rel=0.1)  # of 80 disks that flow, over two strains
+    assert found["mean_pressure"] == pytest.approx(100, rel=0.1)  # 80 flowing disks, over a strain of 2
     assert 0.1 < found["stress_ratio"] < 1 and 0.6 < found["phi"] < 0.85
     trace = sum(series[f"{part}_s{axis}"] for part in ("contact", "kinetic") for axis in ("xx", "yy"))
     np.testing.assert_allclose(series["mean_pressure"], trace / 2, rtol=1e-12)
@@ -62,7 +62,7 @@ def test_an_area_fraction_is_reached_and_kept(shear, tmp_path):
 
 
 def test_both_loops_begin_alike(shear, tmp_path):
-    """Until chaos, and but for the affine part of a change of height (README): 0.3 of strain."""
+    """The loops agree up to a strain of 0.3, before chaos, except for the affine part of a change of height (README)."""
     runs = [
         carry_out(shear, tmp_path / loop, loop=loop, area_fraction=0.63, shear_rate=2.0, strain=0.3, settle_strain=0.2)[
             0
@@ -103,7 +103,7 @@ def test_a_run_that_ends_before_its_pressure_is_there_says_so(shear, tmp_path, c
 
 def test_the_smallest_scale_comes_to_its_pressure(shear, tmp_path):
     _, found = carry_out(shear, tmp_path / "run", **{**shear.PRESETS["smoke"], "inertial_number": 0.1, "grains": 80})
-    # within the scatter of two strains of so few disks
+    # within the scatter of so few disks over a strain of 2
     assert found["mean_pressure"] == pytest.approx(25, rel=0.15)
     assert found["flow_inertial_number"] == pytest.approx(0.1, rel=0.08)
 

@@ -1,4 +1,4 @@
-"""Runs started from Python: `graindrive.run` on a study of a user's own."""
+"""Runs started from Python: `graindrive.run` with a user's study."""
 
 import os
 import subprocess

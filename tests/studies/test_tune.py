@@ -1,4 +1,4 @@
-"""The command tune on a study of a user's own, without YADE: what it leaves, and what a kill leaves for the next call."""
+"""The command tune with a user's study, without YADE: the files that it writes, and how it continues after a kill."""
 
 import os
 import re
@@ -71,13 +71,13 @@ def test_a_tuning_leaves_figure_table_sentences_book_and_parameters(place):
     assert code == 0, words
     out = place / "tuned"
     table = pd.read_csv(out / "table.csv").set_index("setting")
-    # After 1 s of Euler's steps of 0.01 f s (1 - r/100 f)^(100/f) is left, f being dt_factor, r the rate.
+    # After 1 s of Euler steps of 0.01 f s the solution is (1 - r f/100)^(100/f), with dt_factor f and the rate r.
     shift = [((1 - r * 0.02) ** 50 / (1 - r * 0.01) ** 100) - 1 for r in (1, 1.1)]
     assert table.loc["dt_factor=2", "left_bias_percent"] == pytest.approx(100 * sum(shift) / 2, abs=0.03)
     assert table.loc["dt_factor=2", "verdict"] in (
         "good",
         "saves nothing",
-    )  # by the processor's time, which is no test's matter
+    )  # it depends on the processor's time, which is not tested
     text = (out / "report.md").read_text()
     assert "- dt_factor=2 changes left by −0.5" in text
     assert matplotlib.image.imread(out / "figures" / "tuned-levers.png").std() > 0

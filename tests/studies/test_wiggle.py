@@ -1,4 +1,4 @@
-"""The wiggle study, shrunk: as a command in batch mode, and its bed."""
+"""The wiggle study at small size: as a command in batch mode, and its bed."""
 
 import importlib
 import json
@@ -28,7 +28,7 @@ def home(tmp_path_factory):
 
 
 def yade(home, study, *keys, folder=None):
-    """Run a study headless, as a person would, from `folder`; return the finished process."""
+    """Run a study without a display from the working directory `folder`, by its command; return the finished process."""
     environment = {**os.environ, "HOME": str(home), "GRAINDRIVE_CACHE": str(home / "cache")}
     command = ["yade", "-n", "-x", str(STUDIES / study), *keys]
     return subprocess.run(command, cwd=folder or home, env=environment, capture_output=True, text=True, timeout=600)
@@ -125,7 +125,7 @@ def test_an_interrupted_run_goes_on_as_if_it_had_not_been(wiggle, tmp_path, monk
     expected, found = series_of(tmp_path / "whole"), series_of(tmp_path / "parts")
     if loop == "grain":
         assert all(np.array_equal(expected[name], found[name]) for name in expected)
-    else:  # O.load puts the interactions into another order: forces are summed in it, and round-off grows as between loops
+    else:  # O.load changes the order of interactions and so of sums; round-off grows as between the two loops
         assert np.array_equal(expected["t"], found["t"])
         assert np.abs(expected["y"] - found["y"]).max() < 1e-6
 
@@ -150,7 +150,7 @@ def test_an_outline_from_a_file_is_an_intruder(home, tmp_path):
     assert done.returncode == 0, done.stderr
     with h5py.File(tmp_path / "result/run.h5") as file:
         outline = file["intruder/outline"][:]
-        # It is drawn about the place in the series, which is its centroid.
+        # The body is drawn about its position in the series, which is its centroid.
         assert outline.mean(axis=0) == pytest.approx([0, 0], abs=1e-12)
         assert np.ptp(outline, axis=0) == pytest.approx([6, 8])
         assert (file["series/x"][0], file["series/y"][0]) == (11, 8)  # width/2, height - depth
@@ -180,7 +180,7 @@ def test_bad_input_is_one_line_exit_2_and_nothing_written(home, tmp_path, given,
         given,
         folder=tmp_path,
     )
-    yades = ("Running script", "Warning: no X", "TCP python prompt")  # said before any script runs
+    yades = ("Running script", "Warning: no X", "TCP python prompt")  # printed before any script runs
     own_lines = [line for line in done.stderr.splitlines() if not line.startswith(yades)]
     assert done.returncode == 2
     assert len(own_lines) == 1 and said in own_lines[0], done.stderr
@@ -215,7 +215,7 @@ def test_a_bed_rests_around_the_held_body_without_deep_overlaps(monkeypatch, tmp
     assert gap.min() > -5e-3
     inside = (np.abs(bed["x"] - 10) < 3) & (np.abs(bed["y"] - 7) < 3)
     assert not inside.any()
-    assert bed["y"].min() > 0.5  # nothing fell through the base
+    assert bed["y"].min() > 0.5  # no grain fell through the base
 
 
 def test_the_cache_gives_the_same_bed_back_and_knows_every_parameter(monkeypatch, tmp_path):
@@ -267,7 +267,7 @@ def test_what_cannot_be_run_is_refused_in_one_line(home, tmp_path, keys, words):
 
 @pytest.mark.parametrize("loop", ["grain", "yade"])
 def test_frames_are_even_in_time_and_show_the_contacts_of_their_moment(wiggle, tmp_path, loop):
-    """Frames in 1000 steps of which 30 make a block: at every 250th step, at every 167th or so, within blocks."""
+    """Frames in 1000 steps with blocks of 30 steps: at every 250th step, or about every 167th, also within blocks."""
     for count in (5, 7):
         p = tiny(wiggle, loop=loop, frames=count, period=0.6, out=str(tmp_path / str(count)))
         with RunFolder(p, study="wiggle") as folder:
@@ -276,7 +276,7 @@ def test_frames_are_even_in_time_and_show_the_contacts_of_their_moment(wiggle, t
             frames = [file["frames"][name] for name in sorted(file["frames"])]
             times = np.array([frame.attrs["t"] for frame in frames])
             dt = file["provenance"].attrs["dt"]
-            # To half a time step each.
+            # Each to half a time step.
             np.testing.assert_allclose(times, np.linspace(0, 0.5, count), rtol=0, atol=0.51 * dt)
             assert -1 in frames[0]["contacts/j"][:], "the settled bed touches the body"
             for frame in frames:
@@ -284,7 +284,7 @@ def test_frames_are_even_in_time_and_show_the_contacts_of_their_moment(wiggle, t
 
 
 def assert_contacts_are_overlapping_pairs(frame, width):
-    """Of grains and base, without pairs of two frozen ones."""
+    """Contacts of grains and base, without pairs of two frozen ones."""
     x, y, r, role = (frame[name][:] for name in ("x", "y", "r", "role"))
     dx = x[:, None] - x
     dx -= width * np.round(dx / width)

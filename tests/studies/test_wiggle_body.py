@@ -1,4 +1,4 @@
-"""The wiggle study's body: how it moves alone, what it weighs, how it is turned; mirrored beds, and beds under a lid."""
+"""The wiggle study's body: its motion without grains, its mass, its orientation; mirrored beds, and beds under a lid."""
 
 import importlib
 import sys
@@ -65,7 +65,7 @@ def test_a_body_among_no_grains_falls_freely_and_has_the_mass_that_was_asked_for
     assert state.pos[0] - 15 == pytest.approx(p.amplitude * np.sin(2 * np.pi * 2000 * dt / p.period), abs=1e-12)
 
     state, drive = built(wiggle, p)
-    scene.fast_loop().setLoad(drive.body, (0, 3 * np.pi * 7**2 / 4, 0))  # three times the weight of a 7 d disk
+    scene.fast_loop().setLoad(drive.body, (0, 3 * np.pi * 7**2 / 4, 0))  # three times the mass of a 7 d disk
     run(2000)
     assert state.pos[1] - y == pytest.approx(2 * fallen, abs=1e-11)
 
@@ -155,15 +155,15 @@ def test_orientation_beads_and_lid_are_other_beds(wiggle):
 @pytest.mark.parametrize("kind", ["grains", "rigid"])
 def test_a_lid_presses_on_the_bed_as_much_as_was_asked(wiggle, monkeypatch, kind):
     p = small(wiggle, depth=22, height=34, lid=kind, lid_pressure=20, rest=1e-6)
-    monkeypatch.setattr(packing, "settled_bed", packing.settle)  # whose contacts are there still
+    monkeypatch.setattr(packing, "settled_bed", packing.settle)  # whose contacts still exist
     bed = settled(wiggle, p)
     area = np.pi * bed["r"] ** 2
     assert np.sum(bed["density"] * area) - area.sum() == pytest.approx(20 * 30 if kind == "grains" else 0, abs=1e-9)
-    heights = [20.5, 24.0, 27.0]  # over the body and under the lid
+    heights = [20.5, 24.0, 27.0]  # above the body and below the lid
     carried = mean_forces_through(heights, samples=40, steps=120)
     for height, force in zip(heights, carried):
         above = np.sum(area[bed["y"] > height]) / p.width
-        # What is above rests on what is below. The bed still breathes, with a period of 1.2 sqrt(d/g): over twice that time
+        # Contacts at each height bear the weight above. The bed still oscillates, period 1.2 sqrt(d/g): over twice that time
         # the mean acceleration is below two of its speeds, sqrt(2e-5), over the time: 4e-3 g.
         assert force / p.width == pytest.approx(20 + above, rel=1e-2)
 
@@ -188,7 +188,7 @@ def test_a_lid_of_grains_is_the_layer_on_top():
     heavy = density > 1
     area = np.pi * bed["r"] ** 2
     assert bed["y"][heavy].min() > bed["y"][~heavy].max()
-    assert area[heavy].sum() == pytest.approx(lid.LAYER * 50 * 0.8, abs=1)  # to a grain
+    assert area[heavy].sum() == pytest.approx(lid.LAYER * 50 * 0.8, abs=1)  # to within one grain
     assert np.sum(density * area) - area.sum() == pytest.approx(7 * 50, rel=1e-12)
 
 
@@ -208,11 +208,11 @@ def test_fields_of_a_held_bed_are_empty_where_the_body_is_and_full_around_it(wig
     around = O.labeledEngine("around")
     around.dead = False
     run(round(p.period / 5e-4))
-    assert around.samples.tolist() == [5] * 20  # 100 a period over 20 phases
+    assert around.samples.tolist() == [5] * 20  # 100 samples a period, in 20 phases
     inside = np.ix_(np.abs(around.y) < 1, np.abs(around.x) < 1)
     beside = np.ix_(np.abs(around.y) < 3, (np.abs(around.x) > 6) & (np.abs(around.x) < 12))
     fraction, pressure = around.areaFraction.mean(axis=0), around.pressure.mean(axis=0)
     assert fraction[inside].max() < 0.02  # a Gaussian of 1 d that begins 2.5 d away
     assert fraction[beside].mean() == pytest.approx(0.84, abs=0.03)
-    # Janssen and the body carry a part, the fluid's pressure is rho phi g times the depth of 16 d.
+    # The walls (Janssen) and the body bear a part; a fluid would have the pressure rho phi g times the depth of 16 d.
     assert 0.4 < pressure[beside].mean() / (0.84 * 16) < 1.3

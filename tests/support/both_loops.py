@@ -1,4 +1,4 @@
-"""The same small scene on YADE's own loop or on GrainLoop, for tests that hold on both."""
+"""The same small scene on YADE's own loop or on GrainLoop, for tests that apply to both."""
 
 import disks
 import numpy as np
@@ -20,6 +20,6 @@ def way_of(ident, steps):
     """Return the body's positions after each of so many steps, shape (steps, 3)."""
     rows = []
     for _ in range(steps):
-        O.step()  # O.run waits by the twentieth of a second
+        O.step()  # O.run waits in units of 1/20 s
         rows.append(O.bodies[ident].state.pos)
     return np.array(rows)

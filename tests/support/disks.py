@@ -21,7 +21,7 @@ EPS = np.finfo(float).eps
 
 
 def new_scene(dt=1e-4, period=None):
-    """Forget everything but this process; period: edge lengths of a periodic cell."""
+    """Begin a new empty scene; `period`: edge lengths of a periodic cell."""
     O.reset()
     O.dt = dt
     if period is not None:
@@ -51,7 +51,10 @@ def clump(offsets, at=(0.0, 0.0), radius=0.3, mass=2.0, inertia=0.5):
     members = [disk(at[0] + dx, at[1] + dy, radius) for dx, dy in offsets]
     ident = O.bodies.clump(members)
     state = O.bodies[ident].state
-    state.mass, state.inertia = mass, Vector3(1, 1, 1) * inertia  # the orientation stays: members' places refer to it
+    state.mass, state.inertia = (
+        mass,
+        Vector3(1, 1, 1) * inertia,
+    )  # keep the orientation, because members' positions refer to it
     state.blockedDOFs = IN_PLANE
     return ident, members
 
@@ -63,7 +66,7 @@ def hertz(k_n=2e5, k_t=2.46e5, gamma_n=0.0, gamma_t=0.0, **others):
 
 
 def loop(law=None, friction=0.0, before_newton=(), gravity=(0, 0), skin=0.1):
-    """YADE's loop with one of Graindrive's laws; drives and measures stand between contacts and integrator."""
+    """YADE's loop with one of Graindrive's laws; drives and measures are placed between contacts and integrator."""
     contacts = InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom()],
         [engines.Ip2_FrictMat_FrictMat_ContactPhys(friction=friction)],
@@ -76,12 +79,12 @@ def loop(law=None, friction=0.0, before_newton=(), gravity=(0, 0), skin=0.1):
 
 
 def drives_only(*drives, gravity=(0, 0, 0)):
-    """No contacts: drives and the integrator alone."""
+    """No contacts: only drives and the integrator."""
     O.engines = [ForceResetter(), *drives, NewtonIntegrator(damping=0, gravity=gravity, label="newton")]
 
 
 def run(steps):
-    """Run and insist on having run: O.run(..., True) loses the exception of an engine that fails at once."""
+    """Run, and fail if the steps were not made: O.run(..., True) loses the exception of an engine that fails at once."""
     target = O.iter + steps
     O.run(steps, True)
     assert O.iter == target, f"the loop stopped at step {O.iter} of {target}"
@@ -96,7 +99,7 @@ def positions():
 
 
 def everything():
-    """All that moves, for comparisons to the last bit."""
+    """The state of all bodies, for comparisons to the last bit."""
     return np.array([[*b.state.pos, *b.state.vel, *b.state.ori, *b.state.angVel, *b.state.angMom] for b in O.bodies])
 
 

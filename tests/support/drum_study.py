@@ -30,7 +30,7 @@ def carry_out(drum, out, **keys):
 
 
 def contents(path):
-    """Return all that a run left but what its speed decides: arrays of run.h5 and the numbers of summary.json."""
+    """Return the arrays of run.h5 and the numbers of summary.json of a run, without those that depend on its speed."""
     arrays = {}
 
     def visit(name, item):
@@ -44,7 +44,7 @@ def contents(path):
 
 
 def assert_same(one, other):
-    """Two runs left the same bits."""
+    """Assert that two runs have the same results to the last bit."""
     (arrays, summary), (others, other_summary) = contents(one), contents(other)
     assert arrays.keys() == others.keys()
     assert {name: str(value) for name, value in summary.items()} == {n: str(v) for n, v in other_summary.items()}

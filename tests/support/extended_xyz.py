@@ -9,7 +9,7 @@ INTEGER, REAL = re.compile(r"[+-]?(0|[1-9]\d*)\Z"), re.compile(r"[+-]?(\d+\.?\d*
 
 
 def read(text):
-    """Return a list of (settings, columns) of the frames of a text; ValueError where it departs from the specification."""
+    """Return a list of (settings, columns) of the frames of a text; ValueError if it violates the specification."""
     lines, frames = text.split("\n"), []
     if lines.pop() != "":
         raise ValueError("the last line does not end")
@@ -60,14 +60,14 @@ def columns_of(rows, properties):
 
 
 def whole(word):
-    """Return an integer as the specification writes it."""
+    """Return an integer that has the form of the specification."""
     if not INTEGER.match(word):
         raise ValueError(f"not an integer: {word}")
     return int(word)
 
 
 def real(word):
-    """Return a real number as the specification writes it, never nan or inf."""
+    """Return a real number that has the form of the specification, never nan or inf."""
     if not REAL.match(word):
         raise ValueError(f"not a real number: {word}")
     return float(word)

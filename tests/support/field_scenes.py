@@ -1,4 +1,4 @@
-"""Scenes that the tests of FieldAverager share, and how they read its fields."""
+"""Scenes that the tests of FieldAverager share, and functions that read its fields."""
 
 import numpy as np
 from disks import clump, disk, engines, hertz, loop, new_scene
@@ -14,7 +14,7 @@ FIELDS = [
     "totalStress",
     "pressure",
 ]
-LENGTH = 9.0  # of the crowd's periodic box
+LENGTH = 9.0  # edge of the periodic box
 
 
 def averager(label="fields", **options):
@@ -24,7 +24,7 @@ def averager(label="fields", **options):
 
 
 def fields_of(measure):
-    """Return {name: array} of all that an averager has."""
+    """Return {name: array} of all arrays of an averager."""
     return {name: getattr(measure, name) for name in FIELDS}
 
 
@@ -46,7 +46,10 @@ def crowd(friction=0.4, seed=4, **options):
             O.bodies[body].state.blockedDOFs = "xyzXYZ"
             bodies["disk"] = body
     bodies["clump"], members = clump([(-0.5, 0), (0.5, 0)], at=(8, 4.5), radius=0.51)
-    for part in (bodies["clump"], *members):  # YADE's integrator would tell the members, but after the first contacts
+    for part in (
+        bodies["clump"],
+        *members,
+    ):  # YADE's integrator would set the members' velocities only after the first contacts
         O.bodies[part].state.vel = (0.3, -0.2, 0)
     if "body" in options:
         options["body"] = bodies[options["body"]]

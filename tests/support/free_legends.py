@@ -1,8 +1,8 @@
-"""Whether legends hide data, seen in pixels: the figure is drawn without legends, guides and axes, and what is left counts."""
+"""Detect legends that hide data, by pixels: the figure is drawn without legends, guides and axes, and what remains is data."""
 
 import numpy as np
 
-WHITE = 250  # of 255: what is paler is paper
+WHITE = 250  # of 255: lighter pixels count as background
 
 
 def hidden(figure):
@@ -11,7 +11,7 @@ def hidden(figure):
     figure.draw_without_rendering()
     boxes = {axes: axes.get_legend().get_window_extent() for axes in panels}
     layout = figure.get_layout_engine()
-    figure.set_layout_engine("none")  # nothing moves while things are hidden
+    figure.set_layout_engine("none")  # keep the layout while parts are hidden
     seen = [artist for axes in panels for artist in besides_data(axes) if artist.get_visible()]
     for artist in seen:
         artist.set_visible(False)
@@ -31,12 +31,12 @@ def besides_data(axes):
 
 
 def is_free(paper, box):
-    """True if all pixels of a box, in the picture, are paper."""
+    """True if all pixels of a box in the picture are background."""
     (left, bottom), (right, top) = np.ceil(box.min).astype(int), np.floor(box.max).astype(int)
     height, width = paper.shape
     return 0 <= left and right <= width and 0 <= bottom and top <= height and bool(paper[bottom:top, left:right].all())
 
 
 def name_of(axes):
-    """Return what a panel is called in messages."""
+    """Return the name of a panel for messages."""
     return axes.get_title() or axes.get_title(loc="left") or axes.get_ylabel()

@@ -1,4 +1,4 @@
-"""Pages of studies/guides as a reader follows them: files are written, changes applied, commands typed, in an empty folder."""
+"""Follow pages of studies/guides as a reader would, in an empty folder: write files, apply changes, call commands."""
 
 import os
 import re
@@ -32,9 +32,9 @@ def write_files(name, place):
 
 
 def follow(name, place, *programs):
-    """Do what a page says in the folder `place`; return what its commands printed, standard output and errors in one.
+    """Follow a page in the folder `place`; return the output of its commands, standard output and errors together.
 
-    `programs` are folders of programs that stand before those of the system. A command that fails raises AssertionError with
+    `programs` are folders that precede those of the system on PATH. A command that fails raises AssertionError with
     what it said.
     """
     write_files(name, place)
@@ -47,7 +47,7 @@ def follow(name, place, *programs):
 
 
 def type_in(text, place, programs=()):
-    """Run lines in bash in the folder `place`; return what they printed."""
+    """Run lines in bash in the folder `place`; return their output."""
     path = os.pathsep.join([*map(str, programs), os.environ["PATH"]])
     own = dict(HOME=str(place), XDG_CACHE_HOME=str(place / "cache"), PATH=path, OMP_NUM_THREADS="1")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p), **own}

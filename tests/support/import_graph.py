@@ -38,7 +38,7 @@ def graph_of(folders):
 
 
 def circles(graph):
-    """Return the circles of a graph, each as the sorted list of its modules: those that reach themselves through each other."""
+    """Return the cycles of a graph, each as the sorted list of modules that import themselves through each other."""
 
     def reached(start):
         seen, waiting = set(), list(graph[start])

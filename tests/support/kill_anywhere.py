@@ -1,4 +1,4 @@
-"""Kills a small run before each of its changes of the file system, resumes it, kills that too, and counts what is not as it was.
+"""Kills a small run before each of its changes of the file system, resumes it, kills it again, and counts differences.
 
 Usage, with kill_at.cpp preloaded: kill_anywhere.py FOLDER SCENARIO EVERY; prints one JSON object. Every run is a fork of this
 process, so that none has to import anything. Scenarios: plain, interrupted (Ctrl-C at a step), resumed, redo, vtk; full: no
@@ -30,13 +30,13 @@ place = Path(sys.argv[1])
 
 
 class Parameters(StudyParameters):
-    """What the small study knows."""
+    """Parameters of the small study."""
 
     length: int = quantity(STEPS, "-", "steps of the run", ge=1)
 
 
 def study(p, folder, interrupted_at=None):
-    """Multiply a number at each step; a row at each, a frame and a checkpoint at every second one."""
+    """Multiply a number at each step; write a row at each step, a frame and a checkpoint at every second one."""
     first, x, total = 0, 1, 0
     if folder.resumed:
         first = folder.resumed["step"]
@@ -61,7 +61,7 @@ def study(p, folder, interrupted_at=None):
 
 
 def figure(path):
-    """Draw as a study does: from the finished data, in two files."""
+    """Draw a figure as a study does: from the finished data, into two files."""
     with h5py.File(path / "run.h5") as file:
         for name in ("figure.png", "figure.pdf"):
             (path / name).write_text(str(file["series/x"][-1]))
@@ -84,7 +84,7 @@ def session(at, interrupted_at=None, largest_file=None, **keys):
         code = headless.guarded(lambda: headless.carry_out(small, p), "small")
         if largest_file is None:
             os._exit(code)
-        headless.end(code)  # as a study ends: the interpreter's own end may crash on a full disk
+        headless.end(code)  # end as a study does, because the interpreter's normal end may crash on a full disk
     os.close(writing)
     with open(reading, errors="replace") as words:
         said = words.read()
@@ -93,7 +93,7 @@ def session(at, interrupted_at=None, largest_file=None, **keys):
 
 
 def contents(folder):
-    """Return all that a complete run folder holds, but for what it took in time."""
+    """Return the contents of a complete run folder, without computing times."""
     with h5py.File(folder / "run.h5") as file:
         data = {}
         file.visititems(lambda name, item: data.update({name: read(name, item)}))
@@ -104,13 +104,13 @@ def contents(folder):
 
 
 def read(name, item):
-    """Return a dataset as plain values; nothing of parameters and provenance, which say how a run was asked for."""
+    """Return a dataset as plain values; None for parameters and provenance, which depend on how the run was started."""
     timed = name.startswith(("parameters", "provenance"))
     return None if timed or isinstance(item, h5py.Group) else np.asarray(item[()]).tolist()
 
 
 def wrong_after(end, expected, scenario):
-    """Return what is wrong after the last session, which nobody killed, as a list of words."""
+    """Return a list of what is wrong after the last session, which was not killed."""
     code, err = end
     found = [f"exit code {code}: {err}"] if code else []
     if "Traceback" in err:
@@ -145,7 +145,7 @@ def begin(scenario, at):
 
 
 def killed(scenario, every, expected):
-    """Kill at every `every`-th change; half of the runs that go on are killed once or more, anywhere; return what came out."""
+    """Kill at every `every`-th change; half of the resumed runs are killed again, at any change; return the results."""
     chance, failures, kills, at = random.Random(1), [], 0, 1
     keys = dict(resume=True, vtk=scenario == "vtk")
     while True:
@@ -177,7 +177,7 @@ def filled(step, expected):
 
 
 def main():
-    """Carry out one scenario and print what came out."""
+    """Carry out one scenario and print the results."""
     scenario, every = sys.argv[2], int(sys.argv[3])
     empty()
     session(0, vtk=scenario == "vtk")

@@ -1,10 +1,10 @@
-"""What of a run folder's names nobody explains: those of summary.json and of run.h5 that `quantities` does not know."""
+"""Find names in a run folder that are not explained: those of summary.json and run.h5 that `quantities` lacks."""
 
 import h5py
 
 from graindrive.postproc import quantities
 
-BESIDE = ("parameters", "constants", "provenance")  # they bring their meanings with them, or are a list of facts
+BESIDE = ("parameters", "constants", "provenance")  # they contain their meanings, or are a list of facts
 
 
 def unexplained(run):

@@ -1,4 +1,4 @@
-"""Run folders of a made-up drum study with known laws, for tests of its figure and of its campaigns' report."""
+"""Made-up run folders of the drum study with known laws, for tests of its figure and of its campaigns' report."""
 
 import itertools
 import json
@@ -15,9 +15,9 @@ KEYS.update(static_friction=0.246, dynamic_friction=0.401, inertial_scale=0.133)
 
 
 class MadeUpDrums:
-    """The laws: h/D is a + b Fr, of the continuum `apart` more, with errors of 1 %; bed and layer as in `MadeUpDrum`.
+    """The laws: h/D = a + b Fr, in the continuum larger by `apart`, with errors of 1 %; bed and layer as in `MadeUpDrum`.
 
-    `thicker` is by how much the layer of a drum of 2 D is thicker, over D, than that of a drum of D.
+    `thicker` is the increase of the thickness over D from a drum of D to one of 2 D.
     """
 
     def __init__(self, intercept=0.11, slope=1.2, apart=0.0, thicker=0.0):
@@ -29,11 +29,11 @@ class MadeUpDrums:
         return self.intercept + self.slope * keys["froude"] + more
 
     def seconds(self, keys):
-        """Of a core that the continuum takes, by cells and time step."""
+        """Seconds of one core that the continuum takes, by cells and time step."""
         return 1e-3 * keys["cells"] ** 2 / keys["continuum_dt"]
 
     def flow(self, keys, model):
-        """Return the made-up drum whose u = 0 lies at that h."""
+        """Return the made-up drum in which u = 0 at that h."""
         wanted, shape = self.thickness(keys, model) * keys["drum_diameter"], dict(spacing=keys["drum_diameter"] / 50)
         shape.update(diameter=keys["drum_diameter"], omega=keys["angular_velocity"])
         layers = np.linspace(0.05, 0.6, 400) * keys["drum_diameter"]

@@ -1,4 +1,4 @@
-"""A run folder with made-up frames, for tests of what is written for other programs."""
+"""A run folder with made-up frames, for tests of exports to other programs."""
 
 import numpy as np
 

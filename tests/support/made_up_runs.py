@@ -1,4 +1,4 @@
-"""Run folders of a made-up Magnus study with known laws, for tests of what is made of runs."""
+"""Made-up run folders of the Magnus study with known laws, for tests of figures, reports and exports."""
 
 import itertools
 import json

@@ -72,7 +72,7 @@ def loop(law=None, friction=0.0, before_newton=(), gravity=(0, 0, 0), damping=0.
 
 
 def grain_loop(law=None, friction=0.0, before_newton=(), gravity=(0, 0, 0), **settings):
-    """The same on GrainLoop, which is returned; `settings` are GrainLoop's own."""
+    """The same on GrainLoop; return it. `settings` go to GrainLoop."""
     law = law or hertz()
     known = engines.GrainLoop().dict()
     given = {name: value for name, value in law.dict().items() if name in known and name not in ("label", "friction")}

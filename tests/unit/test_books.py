@@ -1,4 +1,4 @@
-"""The measured settings that the project ships: each is of a study of this checkout as it is now, and `accuracy=` finds it."""
+"""The books of measured settings in the project: each fits a study of this checkout as it is now, and `accuracy=` finds it."""
 
 import math
 
@@ -47,7 +47,7 @@ def test_accuracy_finds_a_book_in_each_of_its_scenes(studies, name):
 
 @pytest.mark.parametrize("name", ["lift_demo.json", "magnus_demo.json", "shear_demo.json"])
 def test_the_demo_takes_levers_that_were_measured(studies, name):
-    """A demo's levers are a setting of its book, whose bias lies within 15 % at 90 % confidence."""
+    """The settings of a demo are in its book, and their bias is within 15 % at 90 % confidence."""
     made = SHIPPED[name]
     study = studies[made.study]
     demo = study.usual("demo")

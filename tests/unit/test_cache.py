@@ -16,7 +16,7 @@ def folder(tmp_path, monkeypatch):
 
 
 class Builder:
-    """Counts its calls; makes arrays of two kinds."""
+    """A builder that counts its calls and makes two arrays of different types."""
 
     def __init__(self):
         self.calls = 0
@@ -66,7 +66,7 @@ def test_a_damaged_entry_is_built_anew_with_a_note(folder, damage, capsys):
 
 
 def test_no_changed_bit_of_an_entry_is_an_error_or_another_array(folder, capsys):
-    """Flags of encryption and compression, versions, names, sizes and contents: the lowest bit of each byte."""
+    """Change the lowest bit of each byte: flags of encryption and compression, versions, names, sizes, contents."""
     cache.cached("bed", {}, 1, lambda: dict(x=np.arange(2.0)))
     (entry,) = folder.iterdir()
     whole, refused = entry.read_bytes(), 0
@@ -112,7 +112,7 @@ print(c.cached("bed", {}, 1, build)["x"].sum(), flush=True)
 
 
 def builder():
-    """Start a process that wants the entry, and if it has to make it says so and waits for the end of its input."""
+    """Start a process that requests the entry. If it has to build it, it prints this and waits for the end of its input."""
     pipes = dict(stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     return subprocess.Popen([sys.executable, "-c", BUILD], **pipes)
 

@@ -1,4 +1,4 @@
-"""Plans of campaigns: what a YAML becomes, names that find their runs again, and what is refused before anything runs."""
+"""Plans of campaigns: runs from a YAML file, names under which runs are found again, and plans that are refused before a run."""
 
 import json
 import os
@@ -200,7 +200,7 @@ def test_runs_that_many_grids_share_are_counted_before_they_are_parsed(plan):
 
 def test_numbers_are_read_as_a_person_reads_them(plan):
     found = plan(GOOD.replace("[1, 2]", "[010, 1e1, 11]").replace("steps: 20", "steps: 2.0e+1, period: 1e-9, vtk: 1"))
-    assert [run.parameters.seed for run in found.runs] == [10, 11]  # YAML 1.1 has 8 for 010, and text for 1e-9
+    assert [run.parameters.seed for run in found.runs] == [10, 11]  # YAML 1.1 reads 010 as 8, and 1e-9 as text
     assert found.runs[0].parameters.period == 1e-9 and found.runs[0].parameters.vtk is True
 
 

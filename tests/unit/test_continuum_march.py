@@ -13,7 +13,7 @@ N = 12
 
 
 def sloshing(dt=0.01):
-    """A box of which the left side is filled higher, so that it flows."""
+    """A box whose left side is filled higher, so that the fluid flows."""
     fraction = np.zeros((N, N))
     fraction[: N // 2, : N // 2] = fraction[: N // 4] = 1
     box = dict(cells_x=N, cells_y=N, spacing=1.0, largest_viscosity=10.0)
@@ -22,7 +22,7 @@ def sloshing(dt=0.01):
 
 def test_a_march_counts_cells_time_and_the_processor_s_seconds():
     march = FlowMarch(sloshing())
-    march.advance(continuum.CHUNK + 3)  # more than one look for signals
+    march.advance(continuum.CHUNK + 3)  # more than one check for signals
     assert march.size == N * N and march.flow.steps == continuum.CHUNK + 3
     assert march.time == pytest.approx(0.01 * (continuum.CHUNK + 3), rel=1e-12)
     assert march.seconds > 0 and np.abs(march.flow.velocity).max() > 1e-3
@@ -103,7 +103,7 @@ def test_means_are_those_of_each_block_and_velocities_are_weighted_with_the_frac
     assert np.array_equal(means.mean("fraction"), [[[0.5, 0]], [[1, 0]], [[np.nan] * 2]], equal_nan=True)
     assert np.array_equal(means.mean("pressure")[:2], [[[2, 4]], [[2, 4]]])
     assert np.array_equal(means.mean("ill_posed")[:2], [[[1, 0]], [[1, 0]]])
-    # (0.25 (4, 0) + 0.75 (0, 8))/(0.25 + 0.75) = (1, 6); no velocity where nothing was
+    # (0.25 (4, 0) + 0.75 (0, 8))/(0.25 + 0.75) = (1, 6); no velocity in an empty cell
     assert np.array_equal(means.velocity[:2, 0, 0], [[1, 6], [3, 1]])
     assert np.isnan(means.velocity[:, 0, 1]).all() and np.isnan(means.velocity[2]).all()
 

@@ -1,4 +1,4 @@
-"""Disks that cover the inside of a body: inside it, without room for a grain, the same wherever it stands."""
+"""Disks that cover the inside of a body: all inside, no room for a grain between them, the same at any position."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ BOOT = np.array([(0, 0), (9, 0), (9, 3), (4, 3), (4, 10), (0, 10)], dtype=float)
 
 
 def rough(radius, count=5000):
-    """Return a body whose edge has many more vertices than a grain could feel."""
+    """Return a body whose edge has many more vertices than affect a grain."""
     angle = 2 * np.pi * np.arange(count) / count
     return (radius * (1 - 0.05 * (np.arange(count) % 2)))[:, None] * np.c_[np.cos(angle), np.sin(angle)]
 
@@ -55,7 +55,7 @@ def test_the_cover_of_a_square_is_the_same_wherever_it_stands():
 
 def test_a_large_rough_body_is_covered():
     disks = cover.disks_inside(rough(60.0), SPACING)
-    assert len(disks) * SPACING**2 == pytest.approx(np.pi * 57**2, rel=0.02)  # as far as its notches let disks in
+    assert len(disks) * SPACING**2 == pytest.approx(np.pi * 57**2, rel=0.02)  # as far as disks fit into its notches
 
 
 def test_a_body_too_small_for_a_disk_has_none():

@@ -1,4 +1,4 @@
-"""What C++ tests must keep to so that they may run side by side."""
+"""Rules that C++ tests must obey so that they can run in parallel."""
 
 from pathlib import Path
 

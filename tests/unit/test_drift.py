@@ -1,4 +1,4 @@
-"""The drift of shaken bodies whose motion is known: rate, arrest, rates by phase and their errors."""
+"""The drift of shaken bodies with known motion: rate, arrest, rates by phase and their errors."""
 
 import numpy as np
 import pytest
@@ -69,20 +69,20 @@ def test_too_short_for_a_drift(t, y):
 
 
 def test_a_body_that_wanders_slowly_is_not_called_at_rest():
-    """Steps of 0.04 ± 0.25 d per cycle: now and then a tenth of the run lies within a quarter d, but it goes on."""
+    """Steps of 0.04 ± 0.25 d per cycle: sometimes the body stays within 0.25 d for a tenth of the run, but it goes on."""
     rng, cut, rates = np.random.default_rng(7), 0, []
     for _ in range(200):
         found = drift(np.arange(2501) * 0.04, np.repeat(np.cumsum(rng.normal(0.04, 0.25, 51)), 50)[:2501], 2.0)
         cut += found.end < found.cycle_t[-1]
         rates.append(found.rate)
-    assert cut <= 20  # a walk that happens to end at the top of its way cannot be told from an arrest
+    assert cut <= 20  # a walk that ends at its highest point by chance cannot be distinguished from an arrest
     assert np.mean(rates) == pytest.approx(0.02, abs=3 * 0.125 / np.sqrt(45 * 200) + 0.002)
 
 
 @pytest.mark.parametrize("speed, stops", [(0.1, True), (0.02, False)])
 def test_a_rest_counts_only_if_the_body_would_have_gone_far_meanwhile(speed, stops):
     t = np.linspace(0, 100, 2001)
-    found = drift(t, np.minimum(speed * t, speed * 70), 2.0)  # what is left: 3 d at one speed, 0.6 d at the other
+    found = drift(t, np.minimum(speed * t, speed * 70), 2.0)  # the remaining way: 3 d at one speed, 0.6 d at the other
     assert (found.end < 75) == stops
 
 
@@ -103,7 +103,7 @@ def test_errors_of_rates_by_phase_are_those_of_independent_cycles():
     steps = rng.normal(size=cycles * parts)
     y = np.concatenate([[0], np.cumsum(steps)]) / parts
     _, rates, errors = phase_rates(np.arange(cycles * parts + 1) / parts, y, 1.0, 0, cycles, parts)
-    # Now and then blocks of more than one cycle are taken, which scatter more; 40 errors of a tenth each give 2 %.
+    # Sometimes blocks have more than one cycle, which scatter more; the mean of 40 errors, each known to 10 %, is known to 2 %.
     assert np.sqrt(np.mean(errors**2)) == pytest.approx(1 / 30, rel=0.1)
     assert np.sqrt(np.mean(rates**2)) == pytest.approx(1 / 30, rel=0.4)  # 3 sigma of 40 values
 
@@ -119,7 +119,7 @@ def test_only_whole_cycles_make_rates_by_phase(start, end, known):
 
 
 def test_a_sum_over_the_cycle_has_the_error_of_its_cycles():
-    """Parts of a cycle go up together or down together: as independent parts the error would be a third of the true one."""
+    """Parts of a cycle are correlated: counted as independent, they would give a third of the true error."""
     rng, cycles, weights = np.random.default_rng(8), 400, np.repeat([1.0, -1.0], 8) / 8
     rates = np.repeat(rng.normal(size=(cycles, 2)), 8, axis=1)
     y = np.concatenate([[0], np.cumsum(rates.ravel())]) / 16

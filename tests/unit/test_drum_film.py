@@ -1,4 +1,4 @@
-"""The film of a drum: which pictures stand side by side, what is drawn where, and runs that hold too few pictures."""
+"""The film of a drum: which frames are drawn side by side, the position of what is drawn, and runs with too few frames."""
 
 import subprocess
 
@@ -18,7 +18,7 @@ D, OMEGA, WALL = 40.0, 0.02, 126
 
 
 class DrumKeys(StudyParameters):
-    """The keys of a drum that its pictures need."""
+    """The keys of a drum that its frames need."""
 
     unit_system = "grain"
     drum_diameter: float = quantity(D, "d", "D")
@@ -27,7 +27,7 @@ class DrumKeys(StudyParameters):
 
 
 def grains(t):
-    """A bed of 300 grains below the axis that turns rigidly, and the wall's disks turned by Omega t."""
+    """A bed of 300 grains below the axis that rotates rigidly, and the wall's disks turned by Omega t."""
     rng = np.random.default_rng(3)
     radius, angle = 17 * np.sqrt(rng.uniform(0, 1, 300)), rng.uniform(-np.pi, 0, 300)
     x, y = radius * np.cos(angle), radius * np.sin(angle)
@@ -39,7 +39,7 @@ def grains(t):
 
 
 def flow():
-    """The arrays of a continuum that turns rigidly below the axis."""
+    """The arrays of a continuum that rotates rigidly below the axis."""
     x = np.linspace(-25, 25, 50)
     inside = (np.hypot(x, x[:, None]) < D / 2) & (x[:, None] < 0)
     velocity = OMEGA * np.stack(np.broadcast_arrays(-x[:, None], x), axis=-1)
@@ -49,7 +49,7 @@ def flow():
 
 
 def make(out, of_grains=(), of_flow=()):
-    """Write a run with pictures of grains and of the continuum at these times; return its folder."""
+    """Write a run with frames of grains and of the continuum at these times; return its folder."""
     with RunFolder(DrumKeys(out=str(out)), study="drum") as folder:
         for t in of_grains:
             folder.frame(t, *grains(t))

@@ -20,7 +20,7 @@ def found_in(made, surface_level=0.7):
 @pytest.mark.parametrize("angle", [-12.0, 0.0, 7.3, 20.0, 31.0])
 def test_the_angle_of_a_plane_surface_is_found(angle, surface_level):
     found = found_in(MadeUpDrum(angle_deg=angle), surface_level)
-    # The points of 63 columns scatter by a third of a bin at most: 0.2 d/(18 d/sqrt(3) sqrt(63)) = 0.13 degrees, were it noise.
+    # The points of 63 columns scatter by a third of a bin at most, as noise 0.2 d/(18 d/sqrt(3) sqrt(63)) = 0.13 degrees.
     assert abs(found.numbers["surface_angle_deg"] - angle) < 0.1
 
 
@@ -28,7 +28,7 @@ def test_the_angle_of_a_plane_surface_is_found(angle, surface_level):
 @pytest.mark.parametrize("height", [-2.0, 0.0, 1.5])
 def test_the_place_of_the_surface_is_found_to_a_bin(angle, height):
     depth = found_in(MadeUpDrum(angle_deg=angle, height=height)).surface.depth
-    # A level other than half of the fraction is read off between the bin that the surface cuts and its neighbour.
+    # A level other than half of the fraction is interpolated between the bin that the surface cuts and its neighbour.
     assert abs(depth + height * np.cos(np.radians(angle))) < BIN
 
 
@@ -72,7 +72,7 @@ def test_what_flows_down_comes_up():
     found, h = found_in(made).numbers, made.thickness
     down = -made.omega * h**2 / 2 + made.speed * made.layer / 3 * (1 - (1 - h / made.layer) ** 3)
     expected = made.density * down / (made.omega * made.diameter**2)
-    # Bins that the surface cuts are known to first order, and the square at h mixes both signs.
+    # Bins that the surface cuts have errors of first order, and the square at h contains both signs of u.
     assert found["flow_down"] == pytest.approx(expected, rel=0.01)
     assert found["flow_up"] == pytest.approx(-expected, rel=0.01)
     assert abs(found["flow_balance"]) < 0.01
@@ -83,7 +83,7 @@ def test_the_static_part_turns_with_the_drum():
     found = found_in(made).numbers
     assert (
         found["rigid_deviation"] < 2e-3
-    )  # the angle is found to 0.1 degrees, and cos differs from 1 by 2e-6: bins, not angle
+    )  # the error comes from bins: the angle is found to 0.1 degrees, whose cosine differs from 1 by 2e-6
     assert found["packing_fraction"] == pytest.approx(made.density, rel=1e-12)
 
 
@@ -116,7 +116,9 @@ def test_an_empty_and_a_full_drum_have_no_surface(fraction):
     field = made.field()
     zero = np.zeros_like(field.fraction)
     level = dataclasses.replace(field, fraction=zero + fraction, velocity_x=zero, velocity_y=zero)
-    found = flow.analysed(level, 10 * made.diameter, made.omega).numbers  # so large that its wall lies beyond the grid
+    found = flow.analysed(
+        level, 10 * made.diameter, made.omega
+    ).numbers  # so large that its wall is outside of the grid
     assert np.isnan(found["surface_angle_deg"]) and np.isnan(found["thickness_over_diameter"])
     assert found["flow_down"] == 0 and np.isnan(found["flow_balance"])
 
@@ -138,7 +140,7 @@ def test_profiles_of_other_squares_are_compared_at_the_same_depths():
     coarse = flow.profile_of(made.field(), np.radians(made.angle_deg), made.diameter, edge=2.0)
     assert (
         0 < flow.difference(found_in(made).profile, coarse, made.diameter) < 0.02
-    )  # curvature over 2 d of a layer of 26 d
+    )  # the profile's curvature over 2 d, in a layer of 26 d
 
 
 def noisy_blocks(spread, count=12, seed=3):

@@ -38,7 +38,7 @@ def test_each_lever_is_measured_against_its_finest_value(campaign):
     steps, grids = found["continuum_dt"], found["cells"]
     assert [one.value for one in steps] == [0.08, 0.02, 0.01] and [one.value for one in grids] == [40, 75, 150]
     assert steps[-1].error.value == grids[-1].error.value == 0
-    # The profile differs to first order by the shift of the layer, which is in proportion to the step's excess.
+    # To first order the profile differs by the shift of the layer, which is proportional to the excess of the time step.
     assert steps[0].error.value / steps[1].error.value == pytest.approx(7, rel=0.2)
     assert max(one.error.value for one in grids) < 1e-12
     assert [one.seconds for one in grids] == pytest.approx([0.05 * cells**2 for cells in (40, 75, 150)], rel=1e-12)

@@ -27,7 +27,7 @@ def test_grains_are_placed_inside_without_overlaps(diameter, part):
     recipe = filled(part, diameter)
     x, y, r = drum.place(recipe)
     assert len(x) == recipe.grains and r.min() >= 0.5 and r.max() < 0.6
-    assert (np.hypot(x, y) + r).max() < recipe.room  # off the wall's disks wherever those stand
+    assert (np.hypot(x, y) + r).max() < recipe.room  # not in contact with the wall's disks at any position of these
     deepest, _, _ = engines.overlaps((-diameter, diameter, -diameter, diameter), False, np.c_[x, y], r)
     assert deepest <= 0
 

@@ -1,4 +1,4 @@
-"""Frames for other programs: what formats a run writes, where, whole or not at all, and what extended XYZ says."""
+"""Frames for other programs: formats, file names, complete files or none, and the contents of extended XYZ."""
 
 import extended_xyz
 import h5py
@@ -22,7 +22,7 @@ def finished(tmp_path_factory):
 
 
 def rounded(values):
-    """Return numbers as they come back from 12 digits."""
+    """Return numbers rounded to 12 digits."""
     return np.array([float(text_exports.DIGITS % v) for v in np.ravel(values)]).reshape(np.shape(values))
 
 
@@ -43,7 +43,7 @@ def test_extended_xyz_holds_all_disks_of_all_frames_in_one_box(tmp_path, period)
         lattice, low = settings["Lattice"], settings["Origin"]
         assert np.array_equal(lattice, np.diag(np.diag(lattice))), "a rectangular box"
         reach = disks["r"][:, None] * [0 if period else 1, 1, 1]
-        # The box is written to 12 digits, as the places are.
+        # The box is written with 12 digits, like the positions.
         assert (columns["pos"] - reach >= low - 1e-10).all() and (
             columns["pos"] + reach <= low + np.diag(lattice) + 1e-10
         ).all()

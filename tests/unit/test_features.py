@@ -1,4 +1,4 @@
-"""A scene without a feature gives what it gives with the feature set to nothing: bit for bit, or to what `FEATURES` states."""
+"""A scene without a feature gives the same as with the feature set to zero, bit for bit or to the tolerance in `FEATURES`."""
 
 import json
 
@@ -10,7 +10,7 @@ from graindrive.benchmark import __main__ as benchmark
 from graindrive.benchmark import features, ours
 from graindrive.benchmark.features import BITS, FEATURES, crowd
 
-STEPS = 3000  # of 1e-4: contacts last 70 of them, and every disk meets several others
+STEPS = 3000  # of 1e-4; contacts last 70 steps, and every disk collides with several others
 SET_TO_NOTHING = [feature for feature in FEATURES if feature.nothing]
 
 
@@ -22,7 +22,7 @@ def empty_scene():
 
 
 def outcome(a_scene, **settings):
-    """Return places and velocities of a scene after STEPS, the x and y of each, and how many contacts there are then."""
+    """Return positions and velocities (x and y) of a scene after STEPS, and the number of contacts."""
     ours.bodies(a_scene)
     loop = ours.with_features(a_scene, settings)
     O.run(STEPS, True)
@@ -32,12 +32,12 @@ def outcome(a_scene, **settings):
 
 @pytest.fixture(scope="module")
 def plain():
-    """The outcome of the crowd as it is."""
+    """The results of the scene without changes."""
     return outcome(crowd())[0]
 
 
 def test_the_crowd_collides(plain):
-    """Else nothing would be compared: all disks but the held one have other velocities than at first."""
+    """The comparison needs collisions: all disks except the held one have changed their velocities."""
     first = crowd()
     turned = np.hypot(plain[:, 2] - first["vx"], plain[:, 3] - first["vy"]) > 0.01
     assert turned.sum() == len(turned) - 1
@@ -57,7 +57,7 @@ def test_a_feature_set_to_nothing_changes_nothing(feature, plain):
     "change, settings",
     [
         (features.changed(friction=0.5), {}),
-        (features.changed(gravity=1.0), dict(bounds=(-50, -50, 50, 50))),  # else grains that fly are lost
+        (features.changed(gravity=1.0), dict(bounds=(-50, -50, 50, 50))),  # otherwise flying grains count as lost
         (dict, dict(walls="near")),
         (lambda scene: dict(scene, period=features.extent(scene) - 0.9), {}),
         (dict, dict(damping=0.1)),
@@ -76,7 +76,7 @@ def test_the_base_scene_has_six_contacts_a_disk_and_keeps_them_under_gravity_and
 
 
 def test_a_ratio_is_the_median_of_rounds_by_turns():
-    """Two made-up workers: the median is that of the rounds' ratios, not the ratio of the medians."""
+    """Two made-up programs: the result is the median of the rounds' ratios, not the ratio of the medians."""
     pairs = [(dict(cpu=a, processor="p", contacts=3), dict(cpu=b, contacts=3)) for a, b in ((2, 1), (9, 3), (8, 2))]
     found = features.row(FEATURES[0], 1e9, pairs)
     assert (found["ratio"], found["lowest"], found["highest"]) == (3, 2, 4)

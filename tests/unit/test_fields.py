@@ -63,7 +63,7 @@ def test_phases_are_averaged_by_their_samples(averaged, run):
     v_x, v_y = fields.velocity()
     np.testing.assert_array_equal(np.isnan(v_x), fraction == 0)
     inside = fraction > 1 - 1e-12
-    # The disks turn with their circle: v = omega x r, but for a thousandth step's chord in place of its arc.
+    # The disks turn with their circle: v = omega x r, except that a step of 1e-3 moves them along a chord, not an arc.
     expected = -2 * np.broadcast_to(fields.y[:, None], v_x.shape)
     np.testing.assert_allclose(v_x[inside], expected[inside], atol=0.15)
     assert np.isnan(fields.map("speed", phase=2)).all() and fields.map("speed", phase=0).shape == (30, 30)
@@ -87,13 +87,13 @@ def test_maps_and_streamlines_show_the_fields(run, name):
     np.testing.assert_array_equal(np.ma.getmaskarray(mesh.get_array()).ravel(), np.isnan(fields.map("speed")).ravel())
     assert axes.get_xlim() == pytest.approx((-3, 3))
     segments = np.array(lines.lines.get_segments())
-    # The disks' own circle of 2: no line crosses it by much, and inside it the disks leave a hole of radius 1.5.
+    # The disks are on a circle of radius 2 with a hole of radius 1.5; no line extends much beyond the circle.
     radius = np.hypot(*segments.reshape(-1, 2).T)
     assert len(segments) > 50 and radius.max() < 3.5
     assert name == "smooth" or radius.min() > 1.2
     middle, along = segments.mean(axis=1), segments[:, 1] - segments[:, 0]
     turning = middle[:, 0] * along[:, 1] - middle[:, 1] * along[:, 0]
-    assert (turning > 0).mean() > 0.95  # counter-clockwise, as the disks
+    assert (turning > 0).mean() > 0.95  # counter-clockwise, like the disks
     assert axes.get_xlabel() == {"fine": "$x$  [m]", "smooth": "$x$  [$d$]"}[name]
     plt.close(figure)
 

@@ -21,9 +21,9 @@ from graindrive.postproc.statistics import block_mean, ratio_mean
         (10.94, 4.04, "10.9 ± 4.0"),
         (0.01234, 0.0005, "0.01234 ± 0.00050"),
         (-3.2, 0.4, "−3.20 ± 0.40"),
-        (10.0, 9.96, "10 ± 10"),  # the error's second digit carries over
+        (10.0, 9.96, "10 ± 10"),  # the error is rounded up to another digit
         (1234.0, 123.0, "1230 ± 120"),
-        (-0.001, 0.2, "0.00 ± 0.20"),  # no minus before a zero
+        (-0.001, 0.2, "0.00 ± 0.20"),  # no minus sign before zero
         (1.23e-6, 4.5e-7, "(1.23 ± 0.45) × 10⁻⁶"),
         (2.5e8, 1e7, "(2.50 ± 0.10) × 10⁸"),
         (0.0, 0.0123, "0.000 ± 0.012"),
@@ -64,7 +64,7 @@ def test_a_running_mean_of_white_noise_has_its_mean_and_its_error():
     found = running_mean(samples)
     assert found.ends[0] == 16 and found.ends[-1] == 4096 and np.all(np.diff(found.ends) > 0)
     assert found.values == pytest.approx([samples[:n].mean() for n in found.ends], rel=1e-12)
-    late = found.ends > 400  # 1/√(2n) is 4 %; five of these, as some levels of blocking are taken by chance
+    late = found.ends > 400  # 1/√(2n) is 4 %; five of these, because blocking chooses some levels by chance
     assert found.errors[late] * np.sqrt(found.ends[late]) == pytest.approx(np.ones(late.sum()), rel=0.3)
     assert np.all(np.abs(found.values - 3) < 5 / np.sqrt(found.ends)) and found.resolved
 
@@ -98,7 +98,7 @@ def test_too_short_a_series_has_what_there_is():
 
 
 def test_a_panel_of_convergence_shows_its_late_part():
-    """The first values, of few samples, do not set the range: it is that of the rest with its errors."""
+    """The first values, from few samples, do not determine the range: it follows from the others with their errors."""
     samples = np.r_[np.full(40, 100.0), np.random.default_rng(7).normal(0, 1, 20000)]
     found = running_mean(samples)
     figure, axes = plt.subplots()
@@ -158,7 +158,7 @@ def test_no_legend_lies_over_data(draw, place):
 
 
 def test_the_pixels_see_a_legend_over_data():
-    """The check itself: a legend that nobody moved lies over the curve."""
+    """The check of legends detects one that was not moved off the curve."""
     figure, axes = plt.subplots()
     lines(axes)
     axes.legend(loc="upper right")

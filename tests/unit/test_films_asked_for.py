@@ -1,4 +1,4 @@
-"""film=1: a run is filmed when it is done, and where it could not be it is refused before it begins."""
+"""film=1: the film is made when the run has ended; a run whose film cannot be made is refused before it begins."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ class Keys(StudyParameters):
 
 
 class Made:
-    """A study that notes what is done: its runs, and its films."""
+    """A study that records its runs and its films."""
 
     def __init__(self):
         self.done = []

@@ -1,4 +1,4 @@
-"""Frames of a solid among spheres: contacts with it on either loop, its surface for ParaView, compressed text, the film's cut."""
+"""Frames of a solid among spheres: contacts on both loops, its surface for ParaView, compressed text, the section in films."""
 
 import gzip
 
@@ -28,7 +28,7 @@ def after():
 
 
 def bed(loop, surface):
-    """Spheres on a base, of which a row lies 0.01 into a cylinder of RADIUS at AT; return ids of grains, base and body."""
+    """Spheres on a base, with a row that overlaps a cylinder of RADIUS at AT by 0.01; return ids of grains, base and body."""
     space.start(SIDE, SIDE, SIDE)
     O.dt = 1e-5
     base = space.add_base(SIDE, SIDE, D, 1.0)
@@ -71,7 +71,7 @@ def test_yades_loop_shows_the_same_picture():
     assert np.sum((contacts["i"] == INTRUDER) | (contacts["j"] == INTRUDER)) == 9
     for part, scale in (("grains", 1), ("intruder", 1), ("contacts", 1e5)):
         for name, column in getattr(yades, part).items():
-            # Two steps of 1e-5 under forces of 50 on a mass of half: springs differ in round-off. Stiffness is 1e5.
+            # Two steps of 1e-5 with forces of 50 on masses of 0.5; springs differ by round-off, and the stiffness is 1e5.
             assert np.allclose(column, getattr(fast, part)[name], rtol=0, atol=1e-9 * scale), name
 
 
@@ -86,7 +86,7 @@ def made_up(out, body, export):
 
 
 def read(path):
-    """Return points, point arrays and polygons (lists of rows) that VTK reads of a file."""
+    """Return points, point arrays and polygons (lists of rows) that VTK reads from a file."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 

@@ -1,4 +1,4 @@
-"""Frames of spheres: what a picture shows on either loop, and what comes back from a run folder and from its exports."""
+"""Frames of spheres: their contents on both loops, and what is read back from a run folder and from its exports."""
 
 import disks
 import extended_xyz
@@ -68,7 +68,7 @@ def test_contacts_are_the_pairs_that_overlap_now(loop):
 def test_both_loops_show_the_same():
     yades, fast = (picture.taken(*crowd(loop)) for loop in ("yade", "grain"))
     assert np.abs(yades.contacts["slip_y"]).max() > 1e-5 and np.abs(yades.contacts["ft_z"]).max() > 1e-2
-    # Springs are turned by another formula, positions then differ by less than 1e-6; times a stiffness of 2e5.
+    # The loops turn springs by different formulas, so positions differ by less than 1e-6; the stiffness is 2e5.
     for part, tolerance in (("grains", 1e-5), ("intruder", 1e-5)):
         for name, column in getattr(yades, part).items():
             assert np.abs(column - getattr(fast, part)[name]).max() < tolerance, name
@@ -128,7 +128,7 @@ def test_extended_xyz_holds_three_columns_of_each_vector(tmp_path):
 
 
 def read(path):
-    """Return what VTK reads of a file, and its arrays with their units by `data` of points or cells."""
+    """Return the data set that VTK reads from a file, and the arrays of its points or cells (`data`) with their units."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkDataArray
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader

@@ -1,4 +1,4 @@
-"""From YADE's loop to GrainLoop and back: what cannot be taken back is said."""
+"""From YADE's loop to GrainLoop and back: an error says what cannot be restored."""
 
 import pytest
 from graindrive import engines

@@ -1,4 +1,4 @@
-"""Every campaign of studies/campaigns can be planned as the studies are now: no run of it is refused."""
+"""Every campaign of studies/campaigns can be planned with the present studies: none of its runs is refused."""
 
 from pathlib import Path
 

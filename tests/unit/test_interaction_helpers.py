@@ -1,4 +1,4 @@
-"""YADE's helpers that read interactions: with GrainLoop they answer as on YADE's loop, or refuse by name."""
+"""YADE's functions that read interactions: with GrainLoop they return the same as on YADE's loop, or raise an error."""
 
 import math
 import os
@@ -30,7 +30,7 @@ def pair(**settings):
 
 
 def falling_bed(gravity):
-    """Disks and a clump that fall on frozen ones, which do not touch: YADE counts contacts of frozen disks, too."""
+    """Disks and a clump that fall on frozen ones. Those are apart, because YADE counts contacts of frozen disks too."""
     disks.new_scene(dt=2e-4)
     rng = np.random.default_rng(5)
     for x in np.arange(-1, 9, 1.02):
@@ -45,7 +45,7 @@ def falling_bed(gravity):
 
 
 def told_of(build, loop, pushes=()):
-    """Return (mean, maximum, coordination number) as a runner between contacts and integrator is told every 500 steps."""
+    """Return (mean, maximum, coordination number), read every 500 steps by a PyRunner between contacts and integrator."""
     build()
     O.tags["told"] = ""
     command = (
@@ -84,7 +84,9 @@ def test_of_spheres_they_are_yades_too():
 
     yade, grain = (told_of(build, loop) for loop in ("yade", "grain"))
     assert yade.shape == (3, 3) and np.all(yade > 0)
-    np.testing.assert_allclose(grain, yade, rtol=1e-3)  # the clump is turned by another integrator, with an error of dt
+    np.testing.assert_allclose(
+        grain, yade, rtol=1e-3
+    )  # the loops turn the clump by different integrators, with an error of order dt
 
 
 def test_forces_from_outside_count():
@@ -211,7 +213,7 @@ def test_a_module_that_holds_yades_function_gets_the_new_one_and_others_keep_the
 
 
 def test_names_that_a_script_has_from_yade_are_the_new_ones():
-    """As the yade program does: names first, the user's script with graindrive behind them."""
+    """As in the yade program: its names are defined first, then the user's script imports graindrive."""
     script = (
         "import yade; from yade.utils import *; old = getStress; import graindrive.engines;"
         " assert getStress is yade.utils.getStress is not old and getStress.__wrapped__ is old"

@@ -1,4 +1,4 @@
-"""The kill campaign's judgement: what it counts as lost, different, failed or wedged."""
+"""The results of the kill campaign: what counts as lost, different, failed or wedged (not resumable)."""
 
 import json
 import shutil
@@ -12,7 +12,7 @@ from graindrive.commands import killtest
 
 @pytest.fixture
 def subject(tmp_path):
-    """A whole run of 10 rows and a frame, and a resumed one that is the same."""
+    """A complete run of 10 rows and a frame, and a resumed one with the same contents."""
     for folder in (tmp_path / "whole", tmp_path / "trial/run"):
         folder.mkdir(parents=True)
         with h5py.File(folder / "run.h5", "w") as file:
@@ -39,7 +39,7 @@ def test_the_same_data_are_no_fault_whatever_the_time_they_took(subject):
 
 def test_a_missing_row_and_a_changed_bit_are_counted(subject):
     def flip(file):
-        file["series/x"][9] = np.nextafter(9.0, 10.0)  # the last of its bits
+        file["series/x"][9] = np.nextafter(9.0, 10.0)  # changes the last bit
 
     change(subject, flip)
     assert judged(subject) == {"differing bits": 1}

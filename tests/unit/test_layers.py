@@ -51,7 +51,7 @@ def arrows_of_engines():
 
 
 def one_holds_the_other(room, other):
-    """True for a room and itself, or a room and one inside it: such two are one to the rest."""
+    """True if two rooms are the same, or one is inside the other; such rooms count as one."""
     return f"{room}/".startswith(f"{other}/") or f"{other}/".startswith(f"{room}/")
 
 

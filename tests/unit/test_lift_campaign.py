@@ -59,7 +59,7 @@ def test_what_was_not_run_decides_nothing():
 
 
 class MadeUp:
-    """A campaign whose runs have stresses cos + a part of the weight, 3 rho g D sin(theta) in front."""
+    """A campaign whose runs have stresses of a cosine plus a part of the weight, 3 rho g D sin(theta), at the front."""
 
     theta = (np.arange(64) + 0.5) * 2 * np.pi / 64 - np.pi
 

@@ -82,7 +82,7 @@ def test_the_wake_counts_in_radii_of_the_body(folder, tmp_path):
         campaign = Campaign.of(make_campaign(place, MadeUpMagnus(), dict(fields=sweep)))
         found[diameter] = wake_claims(campaign, campaign.sweep("fields"))
     core, wider, bent, *hot = zip(*found.values())
-    # The same fields at twice the scale: lengths double, shares and directions stay, but for bins at the edges of a window.
+    # The same fields at twice the scale: lengths double; fractions and directions stay, except in bins at the edges of a window.
     assert core[0].measured.value == core[1].measured.value == 0
     assert wider[1].measured.value == pytest.approx(2 * wider[0].measured.value, rel=1e-9)
     assert bent[1].measured.value == pytest.approx(2 * bent[0].measured.value, rel=1e-9)
@@ -92,7 +92,7 @@ def test_the_wake_counts_in_radii_of_the_body(folder, tmp_path):
 
 @pytest.mark.parametrize("constants", [{"d": 0.04}, {}])
 def test_lengths_count_in_the_grains_of_the_run(folder, constants):
-    """In the run's constant d; in a folder of an older version, which holds none, in what its way in m and in d tells."""
+    """d is a constant in the run folder; in one of an older version it follows from the travel, which is given in m and in d."""
     make_campaign(folder, MadeUpMagnus(), dict(fields={**SWEEPS["fields"], "spin_ratio": [0.0], "seed": [1]}))
     (path,) = (folder / "runs").iterdir()
     with h5py.File(path / "run.h5", "r+") as file:

@@ -1,4 +1,4 @@
-"""The film of a Magnus run and the body in its figure: turned as its beads are, beside the grains that pass."""
+"""The film of a Magnus run and the body in its figure: with the orientation of its beads, among the passing grains."""
 
 import subprocess
 
@@ -72,7 +72,7 @@ def test_the_body_is_turned_by_its_angle(tmp_path, shape):
     for k, t in enumerate((0.0, 0.02, 0.04)):
         angle = body.turned(run, run.frame(k))
         assert np.exp(1j * angle) == pytest.approx(np.exp(1j * SPIN * t), abs=1e-12)
-    assert body.turned(run) == pytest.approx(SPIN * 0.04)  # without a frame: what the drive imposes
+    assert body.turned(run) == pytest.approx(SPIN * 0.04)  # without a frame: the motion that the drive imposes
 
 
 def test_the_outline_is_drawn_where_the_beads_are(tmp_path):

@@ -1,4 +1,4 @@
-"""Parameters: what a user may type, what it becomes, and the one line that answers a mistake."""
+"""Parameters: accepted input, the values that it gives, and the error message, one line, for wrong input."""
 
 import math
 import os
@@ -188,14 +188,14 @@ def test_no_value_escapes_the_one_line_answer(key, text):
     try:
         value = getattr(parsed(f"{key}={text}"), key)
     except UsageError as error:
-        # A value is refused by its key's name in front; a condition between keys names both where it stands.
+        # The message on a value begins with its key; the message on a condition between keys names both.
         assert str(error).isprintable() and key in str(error)
     else:
         assert not isinstance(value, float) or math.isfinite(value)
 
 
 class TestBatchTable:
-    """A row of YADE's table, as yade-batch hands it over in YADE_BATCH."""
+    """A row of YADE's table, which yade-batch passes in YADE_BATCH."""
 
     @pytest.fixture
     def table(self, tmp_path):

@@ -1,4 +1,4 @@
-"""The comparison of the lift study with LIGGGHTS: means over packings, verdicts, and their way into RESULTS.md."""
+"""The comparison of the lift study with LIGGGHTS: means over packings, verdicts, and their entry in RESULTS.md."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_the_mean_over_packings_has_the_larger_of_two_errors():
 
 @pytest.mark.parametrize("other, verdict", [(0.32, "**the same**"), (0.33, "**not the same**")])
 def test_the_report_says_whether_two_combined_errors_hold(tmp_path, other, verdict):
-    """0.01/sqrt(2) of each, combined 0.01: 0.30 and 0.32 are two of them apart within round-off, 0.33 three."""
+    """Errors of 0.01/sqrt(2) each combine to 0.01: 0.30 and 0.32 differ by two errors within round-off, 0.33 by three."""
     rows = rows_of([(0.3, other - 1e-9)] * 2)
     text = peer_lift.report("lift_peer", ["scale=demo"], rows + peer_lift.over_packings(rows))
     (drag,) = [line for line in text.splitlines() if line.startswith("| all | drag")]
@@ -41,7 +41,7 @@ def test_the_report_says_whether_two_combined_errors_hold(tmp_path, other, verdi
 
 
 def test_both_codes_are_averaged_over_the_same_travel():
-    """One of them drifts for 20 d: both count from where it is steady."""
+    """One run drifts for 20 d: the means of both begin where it is steady."""
     rng = np.random.default_rng(2)
     still = rng.normal(0, 0.01, (400, 6)) + [-1, 0, 0.5, 0, 0, 0]
     drifting = still.copy()

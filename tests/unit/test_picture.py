@@ -1,4 +1,4 @@
-"""Pictures of a scene: contacts of this moment with the sign of their forces, all in one periodic image, under either loop."""
+"""Frames of a scene: present contacts with the sign of their forces, all in one periodic image, on both loops."""
 
 import disks
 import numpy as np
@@ -96,7 +96,7 @@ def test_a_contact_stands_beside_its_first_side_and_its_line_is_as_long_as_two_r
         length, reach = np.hypot(*(end - start).T), disk["r"][i] + disk["r"][j]
         assert ((length < reach) & (length > 0.9 * reach)).all()
         point = np.c_[c["px"], c["py"]]
-        # The middle of the overlap: as far inside one rim as inside the other.
+        # The middle of the overlap has the same distance to both rims.
         inside_i = disk["r"][i] - np.hypot(*(point - start).T)
         inside_j = disk["r"][j] - np.hypot(*(point - end).T)
         np.testing.assert_allclose(inside_i, inside_j, atol=20 * disks.EPS * WIDTH)
@@ -176,5 +176,5 @@ def test_looking_changes_no_bit_and_leaves_a_scene_that_can_be_saved(tmp_path, f
         return disks.everything()
 
     looked, plain = everything(looking=True), everything(looking=False)
-    # YADE's loop adds forces in the order in which its threads come: round-off of 200 steps.
+    # YADE's loop adds forces in an order that its threads determine: round-off of 200 steps.
     np.testing.assert_allclose(looked, plain, rtol=0, atol=0 if fast else 1e-12)

@@ -1,4 +1,4 @@
-"""A report without a paper's claims: means and errors over seeds, and a figure of every observable against every key."""
+"""A report without claims of a paper: means and errors over seeds, and a figure of every observable against every key."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Reading run folders and drawing the wiggle figure from them alone."""
+"""Reading run folders, and drawing the wiggle figure from their contents only."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""Driving YADE's loop in blocks: how many steps, what they cost, how failures inside the loop come out."""
+"""Running YADE's loop in blocks: number of steps, overhead, and how errors inside the loop are raised."""
 
 import time
 
@@ -48,7 +48,7 @@ def test_impossible_counts_are_refused(scene, steps, block):
 
 
 def test_a_block_costs_far_less_than_yades_own_wait(scene):
-    """O.run(n, True) looks every 40 ms: 100 blocks would take 4 s."""
+    """O.run(n, True) checks every 40 ms, so that 100 blocks would take 4 s."""
     start = time.perf_counter()
     run_blocks(YadeMarch(), 100, 1)
     assert time.perf_counter() - start < 2

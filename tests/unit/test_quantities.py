@@ -1,4 +1,4 @@
-"""Names and units: the table of the documentation is the one that writers take units from."""
+"""Names and units: the table in the documentation is the one from which units in files are taken."""
 
 from pathlib import Path
 

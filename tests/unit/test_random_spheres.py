@@ -20,7 +20,7 @@ def cylinder(points):
 def test_they_fill_the_room_outside_of_a_solid_and_do_not_overlap():
     centres, radii = packing.random_spheres(BOX, 0.25, 0.9, 1.1, 3, periodic="xy", keep_out=cylinder)
     room = 12 * (100 - np.pi * 4)
-    # The grid of 40 x 40 points sees the cylinder's cross-section to some 2 %, that of the box to 0.3 %.
+    # By the grid of 40 x 40 points the cylinder's cross-section is known to some 2 %, that of the box to 0.3 %.
     assert 4 / 3 * np.pi * np.sum(radii**3) / room == pytest.approx(0.25, rel=0.02)
     assert engines.overlaps_in_space(BOX, "xy", centres, radii) == (0.0, None, None)
     assert (cylinder(centres) >= radii).all() and (cylinder(centres) - radii).min() < 0.1

@@ -1,4 +1,4 @@
-"""The HTML reference: docstrings as text, every attribute of every engine, and links that lead nowhere as errors."""
+"""The HTML reference: docstrings as text, every attribute of every engine, and errors for broken links."""
 
 import importlib.util
 
@@ -30,7 +30,7 @@ def test_an_attribute_has_type_unit_default_and_whether_it_can_be_set():
         "Vector3(0,0,0)",
         True,
     )
-    positions = attribute(engines.GrainLoop, "positions")  # which has none before the loop stands in O.engines
+    positions = attribute(engines.GrainLoop, "positions")  # it has no value before the loop is in O.engines
     assert (positions.type, positions.unit, positions.default, positions.settable) == ("", "m", "", False)
     assert positions.in_words() == "read only"
 
@@ -41,7 +41,7 @@ def test_what_is_told_of_an_attribute_is_so(cls):
     fresh = cls()
     for told in attribute_help.attributes_of(cls):
         if told.type == "NoneType":
-            continue  # nothing is there by default, which cannot be given
+            continue  # the default is an empty value, which cannot be assigned
         if told.settable:
             setattr(fresh, told.name, getattr(cls(), told.name))
             assert repr(getattr(fresh, told.name)) == told.default, told.name
@@ -95,7 +95,7 @@ def test_a_formula_keeps_its_lines_and_a_sentence_does_not():
 
 
 def checkout(folder, guide):
-    """Make a folder with what a checkout has for the reference to read."""
+    """Make a folder with those files of a checkout that the reference reads."""
     for page in sources.READMES:
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
         (folder / page).write_text("# A page\n")

@@ -1,4 +1,4 @@
-"""Resistive-force theory: sums with known values, interpolation that gives plates back, and the symmetry of a turned bed."""
+"""Resistive-force theory: sums with known values, interpolation exact at measured plates, and the symmetry of a mirrored bed."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ DEPTH, RADIUS = 0.05, 0.0025
 
 
 def plates(alpha_x, alpha_z, error=0.0):
-    """Plates that meet these functions of beta."""
+    """Plates with stresses that are these functions of beta."""
     alpha = np.array([np.broadcast_to(f(TILTS), TILTS.shape) for f in (alpha_x, alpha_z)], dtype=float)
     return rft.Plates(TILTS, alpha, np.full_like(alpha, error), DEPTH)
 
@@ -25,12 +25,12 @@ SUMS = pytest.mark.parametrize("weights", [rft.linear, rft.fourier])
 
 @SUMS
 def test_a_constant_stress_on_a_circle_acts_on_half_its_circumference(weights):
-    """alpha times pi R times the axis' depth, for the leading half is as deep as its axis on average; error likewise."""
+    """The force is alpha times pi R times the axis' depth, the mean depth of the leading half; the same for the error."""
     made = plates(constant(3e5), constant(-2e5), error=1e4)
     rows = rft.as_published(rft.leading_elements(rft.circle(2 * RADIUS)), made, DEPTH, weights)
     found, error = rft.force(rows, made)
     assert np.allclose(found, np.pi * RADIUS * DEPTH * np.array([3e5, -2e5]), rtol=1e-12)
-    # 1e4 pi R h if all plates erred alike; eight that err on their own give less, but no less than over sqrt(8).
+    # 1e4 pi R h if all plates had the same error; eight independent errors give less, but at least this over sqrt(8).
     assert np.all(error < 1e4 * np.pi * RADIUS * DEPTH) and np.all(
         error > 1e4 * np.pi * RADIUS * DEPTH / np.sqrt(8.001)
     )
@@ -50,7 +50,7 @@ def test_a_stress_along_the_normal_lifts_by_buoyancy():
 def test_a_plate_gives_its_own_force_back(k):
     made = plates(lambda beta: 3e5 + 1e5 * np.cos(beta), lambda beta: 2e5 * np.sin(3 * beta) - 1e4)
     one = rft.Elements(TILTS[k : k + 1], np.array([0.004]), np.array([0.0]))
-    for rows in (rft.as_published, rft.as_split):  # at the plates' own depth both are what was measured
+    for rows in (rft.as_published, rft.as_split):  # at the depth of the plates both forms give the measured values
         found, _ = rft.force(rows(one, made, DEPTH), made)
         assert np.allclose(found, 0.004 * DEPTH * made.alpha[:, k], rtol=1e-12)
 
@@ -76,7 +76,7 @@ def test_linear_interpolation_goes_around():
 
 
 def test_a_bed_turned_upside_down_lifts_only_by_the_gradient():
-    """Where alpha_z is odd the published form lifts by the gradient alone; an even part of it adds a lift that grows."""
+    """If alpha_z is odd, the published form has lift from the gradient only; an even part adds a lift that grows with depth."""
     elements = rft.leading_elements(rft.circle(2 * RADIUS))
 
     def lift(rows, made, depth):
@@ -108,7 +108,7 @@ def test_the_stored_outlines_are_those_that_the_module_makes():
 
 @pytest.mark.parametrize("tilt", outlines_for_lift.TILTS)
 def test_a_plate_leads_with_its_face(tilt):
-    """Its long edge has its tilt, and where the tilt is > 0 the face ahead looks down: the lower corner is the rear one."""
+    """The long edge has the given tilt; for a tilt > 0 the leading face points down: the lower corner is the rear one."""
     outline = outlines_for_lift.plate(tilt)
     beta, length = rft.longest_edge(outline)
     assert (np.degrees(beta), length) == (pytest.approx(tilt), pytest.approx(outlines_for_lift.LENGTH))
@@ -119,7 +119,7 @@ def test_a_plate_leads_with_its_face(tilt):
 
 
 def test_the_curved_sides_of_half_cylinders_lead():
-    """Flat side up, the front looks down, beta from 0 to 90 degrees; flat side down it is the other way around."""
+    """With the flat side up the front points down, beta is 0 to 90 degrees; with the flat side down it is the opposite."""
     up, down = (rft.leading_elements(outlines_for_lift.half_cylinder(flat_up)) for flat_up in (True, False))
     assert np.all((up.beta > 0) & (up.beta < np.pi / 2)) and np.all((down.beta < 0) & (down.beta > -np.pi / 2))
     quarter = np.pi / 4 * outlines_for_lift.DIAMETER

@@ -1,4 +1,4 @@
-"""RFT on trial: verdicts on made-up campaigns in which bodies obey one of its two forms."""
+"""The report on RFT: verdicts on made-up campaigns in which bodies obey one of its two forms."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ CAMPAIGNS = Path(__file__).resolve().parents[2] / "studies" / "campaigns"
 
 
 def alpha(beta, depth, form):
-    """(2, n): what plates meet at a depth [m], with an odd part of alpha_z over an even one that lifts a cylinder."""
+    """Return (2, n), the stresses of plates at a depth [m]; alpha_z has an odd part and an even one, which lifts a cylinder."""
     even = 1.0 if form == "published" else DEEP * D / depth
     return RHO_G * np.array([8 - 2 * np.cos(2 * beta), 3 * np.sin(2 * beta) + even])
 
@@ -33,7 +33,7 @@ def scene():
 
 
 class MadeUp:
-    """A campaign whose bodies meet the sum of `form`, and plates their own stress; `turned` swaps the sign of halves' lift."""
+    """A campaign in which forces on bodies are the sum of `form` over plates; `turned` changes the sign of the halves' lift."""
 
     def __init__(self, form, turned=False):
         tilts = np.radians(outlines_for_lift.TILTS)
@@ -130,12 +130,12 @@ def test_the_figure_shows_the_lift_by_rft_at_the_depth_of_a_run():
     deepest = campaign.sweep("cylinder").iloc[-1]
     at = np.interp(deepest["depth_over_d"], line.get_xdata(), line.get_ydata())
     plt.close(figure)
-    # The run's force is the sum over a polygon of the same sides; the line is straight.
+    # The run's force is the sum over a polygon with the same number of sides; the curve is a straight line.
     assert at == pytest.approx(deepest["lift_over_buoyancy"], rel=1e-3)
 
 
 def test_the_campaign_drags_all_outlines_and_the_cylinder_as_lift_small_does():
-    """Its runs of the cylinder bear the names of those of lift_small.yaml, so that finished ones can serve both."""
+    """Its runs of the cylinder have the names of those of lift_small.yaml, so that both campaigns can use the same runs."""
     plan, other = (read_plan(CAMPAIGNS / f"{name}.yaml") for name in ("lift_rft", "lift_small"))
     dragged = {Path(run.parameters.shape).name for run in plan.runs if "cylinder" not in run.sweeps}
     assert dragged == set(outlines_for_lift.outlines())

@@ -1,4 +1,4 @@
-"""Series, items and their union: what is written comes back, and at every moment it can be read."""
+"""Series, items and their union: what is written is read back, and files can be read at any time during a run."""
 
 import json
 from types import SimpleNamespace
@@ -72,7 +72,7 @@ def test_summaries_are_flat_and_finite():
 
 
 class TestFolder:
-    """The life of a run folder inside one process, without YADE."""
+    """A run folder from start to end in one process, without YADE."""
 
     def folder(self, path, **parameters):
         return RunFolder(StudyParameters(out=str(path), **parameters), study="test")
@@ -123,7 +123,7 @@ def test_a_resumed_run_took_the_time_of_its_earlier_sessions_too(tmp_path, monke
             folder.checkpoint(lambda place: None, 10 * (session + 1))
             now.seconds += 5  # these steps are made again
             raise KeyboardInterrupt
-        now.seconds += 1000  # nobody runs it
+        now.seconds += 1000  # no process runs it
     with RunFolder(StudyParameters(out=str(tmp_path / "a"), resume=True), study="toy"):
         now.seconds += 25
     summary = json.loads((tmp_path / "a" / "summary.json").read_text())

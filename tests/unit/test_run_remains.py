@@ -1,4 +1,4 @@
-"""What runs leave when they end early, and what the next call makes of it; one process, without YADE."""
+"""The files of runs that end early, and how the next call continues from them; in one process, without YADE."""
 
 import json
 import os
@@ -38,7 +38,7 @@ class Place:
         return RunFolder(Parameters(**{"out": str(self.path / "a"), **keys}), study="toy", figure=figure or draw)
 
     def run(self, *, stop=None, checkpoint_at=4, **keys):
-        """Run to the end, or interrupted after the step `stop`; each step is a row, the checkpoint is taken at one of them."""
+        """Run to the end or until an interruption after step `stop`; each step writes a row, one of them a checkpoint."""
         with self.open(**keys) as folder:
             go_on(folder, stop, checkpoint_at)
 
@@ -58,7 +58,7 @@ class Place:
         return file
 
     def change(self, **changes):
-        """Change facts in the checkpoint that an interrupted run left."""
+        """Change entries in the checkpoint of an interrupted run."""
         file = self.facts()
         file.write_text(json.dumps({**json.loads(file.read_text()), **changes}))
 
@@ -85,7 +85,7 @@ def go_on(folder, stop, checkpoint_at):
 
 
 def killed(folder):
-    """Let go of the files of a run as the system does when it is killed; what it had not flushed is lost."""
+    """Close the files of a run as the system does after a kill; data that were not flushed are lost."""
     if folder.series is not None:
         folder.series.waiting = {name: [] for name in folder.series.waiting}
         folder.series.file.close()
@@ -320,7 +320,7 @@ def test_a_finished_run_with_the_name_of_remains_stays_even_if_a_file_of_it_is_g
 def test_remains_that_lack_only_their_figure_still_give_way(place):
     place.interrupted()
     with h5py.File(place.path / "a.interrupted/run.h5", "r+") as file:
-        file.attrs["state"] = "complete"  # as one killed while it was drawn
+        file.attrs["state"] = "complete"  # like a run that was killed during drawing
     place.run(resume=True)
     assert place.names() == ["a"] and place.rows() == WHOLE
 

@@ -1,4 +1,4 @@
-"""Scenes: what YADE writes of them goes through memory, and what no loop can compute is refused."""
+"""Scenes: YADE's archives of them are written to memory, and scenes that no loop can compute are refused."""
 
 import gzip
 import tempfile

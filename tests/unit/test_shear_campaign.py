@@ -1,4 +1,4 @@
-"""The claims of a shear campaign on made-up runs of known laws: which are found, and that wrong laws are told apart."""
+"""The claims of a shear campaign on made-up runs of known laws: right laws are reproduced, wrong laws are not."""
 
 import json
 
@@ -20,7 +20,7 @@ REPRODUCED, NOT = Verdict.REPRODUCED, Verdict.NOT_REPRODUCED
 
 
 def summary(inertial, ratio, phi, pressure):
-    """The numbers of a run with errors of a usual size, exact values."""
+    """The numbers of a run: exact values with errors of a usual size."""
     values = dict(flow_inertial_number=inertial, stress_ratio=ratio, phi=phi, mean_pressure=pressure)
     errors = dict(flow_inertial_number=1e-6, stress_ratio=0.001, phi=5e-4, mean_pressure=0.002 * pressure)
     return {**values, **{f"{name}_err": error for name, error in errors.items()}}
@@ -87,7 +87,7 @@ def test_the_paper_s_constants_are_found_at_its_area_fraction_and_not_at_constan
 
 @pytest.mark.parametrize("changes, which", [(dict(soft=0.40), -2), (dict(held=STIFF), -1), (dict(held=STIFF), 3)])
 def test_another_reason_would_be_told(tmp_path, changes, which):
-    """If soft grains did not have the friction of those at constant area, or those at constant area had that of stiff ones."""
+    """Claims fail if soft grains have other friction than grains at constant area, or if those have that of stiff grains."""
     campaign = made(tmp_path, **changes)
     assert verdicts(held_area.claims, campaign, "constant")[which] != REPRODUCED
 
@@ -105,7 +105,7 @@ def test_their_inertial_number_has_the_mean_mass_of_a_disk():
     diameters = np.random.default_rng(1).uniform(1, 1.2, 10**6)
     assert da_cruz.BY_MASS == pytest.approx(
         np.sqrt(np.pi / 4 * np.mean(diameters**2)), rel=3e-4
-    )  # of a million disks
+    )  # as of a million disks
 
 
 def test_a_place_between_two_points():

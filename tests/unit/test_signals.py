@@ -1,4 +1,4 @@
-"""Stop signals become one exception: at once, after a protected block, and not where they were ignored from the start."""
+"""Stop signals raise one exception: at once, or after a protected block; not if they were ignored from the start."""
 
 import os
 import signal
@@ -13,7 +13,9 @@ from graindrive.base.errors import Interrupted
 
 @pytest.mark.parametrize("number", signals.STOP_SIGNALS)
 def test_a_signal_raises_at_once_and_handlers_come_back(number):
-    inherited = signal.signal(number, signal.SIG_DFL)  # nohup and jobs in the background begin with some ignored
+    inherited = signal.signal(
+        number, signal.SIG_DFL
+    )  # under nohup and in the background some signals are ignored from the start
     try:
         with pytest.raises(Interrupted) as caught, signals.handled():
             os.kill(os.getpid(), number)

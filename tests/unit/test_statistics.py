@@ -44,7 +44,7 @@ def test_white_noise_is_taken_as_it_is():
 
 
 def test_a_random_walk_is_not_resolved():
-    """Its correlation time is the series itself: no block length can do."""
+    """The correlation time is as long as the series, so no block length is enough."""
     walks = np.cumsum(np.random.default_rng(3).normal(size=(20, 256)), axis=1)
     assert sum(not block_mean(walk).resolved for walk in walks) >= 10
 
@@ -80,7 +80,7 @@ def test_quantiles_of_chi_squared():
 
 
 def test_error_of_a_ratio_of_correlated_series_is_that_of_many_repeats():
-    """Lift = drag/2 + noise of its own: the common part drops out of the ratio, so its error is the noise's alone."""
+    """Lift = drag/2 + independent noise: the common part cancels in the ratio, so its error comes from the noise only."""
     rng, n = np.random.default_rng(3), 4096
     ratios, errors = [], []
     for _ in range(60):
@@ -116,7 +116,7 @@ def test_a_transient_is_left_out_and_noise_is_not():
         falsely_cut += steady_start(noise)[0] > 0
         cut, steady = steady_start(noise + 10 * np.exp(-np.arange(n) / 200))
         assert steady and 200 <= cut <= 1600
-    assert falsely_cut <= 4  # 3 standard errors of an error that is itself known to some 10 %
+    assert falsely_cut <= 4  # 3 standard errors of the estimated error, which is known to some 10 %
 
 
 def test_a_drift_to_the_end_is_not_steady():

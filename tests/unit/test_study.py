@@ -1,4 +1,4 @@
-"""The object that a study is: what it refuses, what a preset of it is, and how a file's is loaded."""
+"""The Study object: what it refuses, its presets, and how it is loaded from a file."""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Meshes of solids known by their distance: closed, on the surface, and of the solid's volume."""
+"""Meshes of solids that are given by a distance function: closed, on the surface, with the solid's volume."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def test_a_ball_gets_a_closed_mesh_on_its_surface():
 def test_a_box_in_a_box_that_is_no_cube_keeps_its_volume_but_for_its_edges():
     brick = surfaces.swept_outline([(-1, -0.5), (1, -0.5), (1, 0.5), (-1, 0.5)], low=-0.25, high=0.25)
     points, quads = surface_nets.mesh(brick, (-1, -0.5, -0.25), (1, 0.5, 0.25))
-    assert np.isclose(volume(points, quads), 1.0, rtol=0.05)  # edges are rounded by a 48th of 2
+    assert np.isclose(volume(points, quads), 1.0, rtol=0.05)  # edges are rounded by 2/48
     assert (np.abs(points) <= np.array([1, 0.5, 0.25]) + 1e-9).all()
 
 

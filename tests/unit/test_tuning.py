@@ -66,7 +66,7 @@ def test_a_bound_holds_for_nine_of_ten_further_runs():
         *seen, more = random.normal(0.01, 0.03, 6)
         kept += abs(more) <= pooled(seen, [math.nan] * 5).bound(0.9)
     share = kept / tries
-    assert 0.9 - 3 * math.sqrt(0.09 / tries) <= share < 0.99  # at least 0.9; wider by what the bias gives away
+    assert 0.9 - 3 * math.sqrt(0.09 / tries) <= share < 0.99  # at least 0.9; the bias makes the interval wider
 
 
 def test_so_many_runs_bring_the_mean_below_the_target():
@@ -81,7 +81,7 @@ def test_a_lever_that_is_auto_starts_from_what_the_study_takes():
     study = command.loaded(command.study_file("lift"))
     values = dict(depth=30, lid_density=40, width=60, breadth=5, height=52, travel=None)
     assert ladder.reference_of(study, {})["travel"] is None
-    assert ladder.parameters_of(study, values).taken()["travel"] == 53.4  # 60 d less 2 D, before the wake
+    assert ladder.parameters_of(study, values).taken()["travel"] == 53.4  # 60 d less 2 D, outside of the wake
     assert ladder.rungs(study, values, "travel")[0] == [26.7, 13.35]
 
 
@@ -150,7 +150,7 @@ def test_a_search_walks_each_lever_to_the_last_good_value_and_joins_them():
     assert dict(search.walk("cells")) == {32: GOOD, 16: GOOD, 8: GOOD, 4: BAD}  # 0.6, 1.9, 4.4, 9.4 %
     assert dict(search.walk("time"))[1.0] == GOOD and dict(search.walk("dt_factor"))[32.0] == GOOD
     assert dict(search.walk("precision")) == {"single": SAVES_NOTHING}
-    # All together are off by 7.4 %; without the lever that changes most, cells, by 3 %.
+    # All levers together give an error of 7.4 %, without cells, the lever with the largest effect, 3 %.
     assert search.chosen() == (("dt_factor", 32.0), ("time", 1.0))
     tried = {t.setting for t in trials.outcomes}
     assert (("cells", 8), ("dt_factor", 32.0), ("time", 1.0)) in tried and (("cells", 4), ("time", 1.0)) not in tried
@@ -196,14 +196,14 @@ def test_scenes_are_paired_and_scaled_each_by_its_own_mean():
     searched(trials, vary=["cells"])
     effect = trials.effect((("cells", 16),), "force")
     assert effect.bias == pytest.approx((0.4 / 16 - 0.4 / 64), rel=1e-3) and effect.runs == 4
-    assert trials.effect((("cells", 16),), "torque") == NOTHING  # its reference is 0: nothing is relative to that
+    assert trials.effect((("cells", 16),), "torque") == NOTHING  # its reference is 0, so no relative change exists
 
 
 # ---- books and accuracy ----------------------------------------------------------------------------------------------
 
 
 def bound_of(share):
-    """An effect of which one more run stays within `share` at 90 %."""
+    """An effect with which one more run is within `share` at 90 %."""
     return Effect(0.0, 0.0, share / 1.6448536 / math.sqrt(1.5), 2, math.inf)
 
 
@@ -258,7 +258,9 @@ def test_accuracy_takes_the_cheapest_setting_within_it(books):
     assert p.choice.bound("force") == pytest.approx(0.04, rel=1e-6)
     assert parse(STUDY, ["accuracy=0.02"], {}).cells == 32
     assert parse(STUDY, ["accuracy=25%"], {}).cells == 8
-    assert p.digest() == parse(STUDY, ["cells=16", "speed=1.5"], {}).digest()  # the same run, however it was chosen
+    assert (
+        p.digest() == parse(STUDY, ["cells=16", "speed=1.5"], {}).digest()
+    )  # the same run, although it was chosen in another way
 
 
 def test_a_setting_that_the_study_refuses_in_the_scene_is_not_taken(books):
@@ -381,7 +383,7 @@ def test_scenes_on_trial_lie_inside_the_cover_and_are_the_same_each_time(books):
 def test_the_accuracies_on_trial_make_each_setting_of_the_front_the_choice(books):
     made = book.read(books / "made_up.json")
     found = held_out.accuracies(made, "force")
-    # Within 4 % all cost alike, and the reference is the most accurate; it is not put on trial against itself.
+    # Within 4 % all settings cost the same, and the reference is the most accurate; it is not compared with itself.
     assert found == []
     cheaper = [
         dataclasses.replace(s, core_seconds=1.0 / (1 + len(s.levers) + s.levers.get("cells", 0))) for s in made.settings

@@ -1,4 +1,4 @@
-"""Verdicts and the arithmetic below them: definitions, and never `reproduced` where the error is unknown or too large."""
+"""Verdicts and their arithmetic: definitions, and never `reproduced` if the error is unknown or too large."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""One version everywhere: CMake's, the package's and the citation's."""
+"""CMake, the package and the citation have the same version."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""ParaView files: what is written is what VTK reads back, beside YADE in the same process, in either order of import."""
+"""ParaView files: VTK reads back what was written, with YADE in the same process, in both orders of import."""
 
 import os
 import subprocess
@@ -91,7 +91,7 @@ def test_the_body_s_outline_moves_and_turns_with_it(tmp_path):
     export([bed()], tmp_path, BODY)
     data, to_numpy = read(tmp_path / "intruder_0001.vtp")
     corners = [data.GetCell(0).GetPoints().GetPoint(k)[:2] for k in range(5)]
-    # Beads at (-1, 0), (1, 0) have come to (0, 1), (0, -1) about (1.5, 1.85): turned by -90 degrees, (x, y) -> (y, -x).
+    # Beads at (-1, 0), (1, 0) are now at (0, 1), (0, -1) about (1.5, 1.85): turned by -90 degrees, (x, y) -> (y, -x).
     turned = [[-0.25, 1.25], [-0.25, -1.25], [0.25, -1.25], [0.25, 1.25], [-0.25, 1.25]]
     assert data.GetNumberOfLines() == 1 and np.allclose(corners, np.add(turned, [1.5, 1.85]))
 
@@ -154,7 +154,10 @@ def test_fields_come_back_as_images_with_units(tmp_path):
         assert np.array_equal(tensor[:2, :2], arrays["contact_stress"][1, row, column]) and not tensor[2].any()
     assert found["pressure"][1] == "rho g d"
     sets = ElementTree.parse(tmp_path / "fields_around.pvd").findall("Collection/DataSet")
-    assert [float(s.get("timestep")) for s in sets] == [2.0, 4.0]  # the middles of the halves of a cycle of 4 from 1 on
+    assert [float(s.get("timestep")) for s in sets] == [
+        2.0,
+        4.0,
+    ]  # the middles of the two halves of a cycle of length 4 that begins at 1
 
 
 def test_fields_averaged_along_y_lie_in_the_plane_of_x_and_z(tmp_path):

@@ -49,7 +49,7 @@ NOISE = 1e-3
 
 
 def law(keys):
-    """V_y: a minimum at T = 1, zero at the shape's first period, a maximum, then a fall; nothing at A <= 1; linear in mu."""
+    """V_y: a minimum at T = 1, zero at the shape's first rising period, a maximum, then a fall; 0 for A <= 1; linear in mu."""
     t, first = keys["period"], FIRST[keys["shape"]]
     if keys["amplitude"] <= 1:
         return 0.0
@@ -59,7 +59,7 @@ def law(keys):
 
 
 def swung(period, noise):
-    """The way of a velocity SWING sin(2 w t), with its size a little other in each cycle."""
+    """The displacement of a velocity SWING sin(2 w t) whose amplitude varies slightly from cycle to cycle."""
     angle = 4 * np.pi * TIMES / period
     size = 1 + 0.01 * np.array([noise() for _ in range(int(100 / period) + 1)])[(TIMES / period).astype(int)]
     return SWING * size * (1 - np.cos(angle)) * period / (4 * np.pi)
@@ -128,7 +128,7 @@ def test_a_paper_that_is_true_is_reproduced(tmp_path):
     judged = {c.text: c.verdict for c in claims}
     for shape, first in FIRST.items():
         found = next(c for c in claims if c.text == f"{shape}: first period that rises, observed")
-        # The law has a kink at its zero, between samples that are one apart: the chord may miss it by up to 0.4.
+        # The law has a kink at its zero, and samples are 1 apart, so linear interpolation may be off by up to 0.4.
         assert found.measured.value == pytest.approx(first, abs=0.4)
         assert found.verdict is Verdict.REPRODUCED, str(found)
         assert (
@@ -190,7 +190,7 @@ def test_a_body_that_always_or_never_rises_has_a_bound_for_its_first_period(tmp_
 
 def test_errors_are_widened_to_the_scatter_of_repeats_over_all_settings(tmp_path):
     campaign = campaign_of(tmp_path, dict(periods=[dict(period=PERIODS, seed=[1, 2, 3])]))
-    campaign.as_measured["rise_rate_err"] = NOISE / 3  # less than the runs scatter
+    campaign.as_measured["rise_rate_err"] = NOISE / 3  # less than the scatter of the runs
     wide = replace(campaign, pooled=("rise_rate",))
     wide.__dict__["as_measured"] = campaign.as_measured
     assert wide.widened["rise_rate"] == pytest.approx(3, rel=0.5)  # chi^2 of 16 degrees of freedom, to 3 sigma
@@ -201,7 +201,7 @@ def test_errors_are_widened_to_the_scatter_of_repeats_over_all_settings(tmp_path
 def test_the_smallest_amplitude_that_moves_is_where_a_tenth_of_the_fastest_is_reached(tmp_path):
     campaign = campaign_of(tmp_path, dict(amplitudes=[dict(period=[5.0], amplitude=[0.5, 1.0, 3.0, 5.0], seed=[1, 2])]))
     of_runs, of_model = amplitude_claims(campaign, campaign.sweep("amplitudes"))
-    # Nothing at 1, three fifths at 3: a tenth of the fastest at 1 + 2 / 6.
+    # 0 at A = 1 and 3/5 at A = 3: a tenth of the fastest at 1 + 2/6.
     assert of_runs.measured.value == pytest.approx(4 / 3, abs=0.02)
     assert of_runs.verdict is of_model.verdict is Verdict.REPRODUCED
 
@@ -222,7 +222,7 @@ def test_phases_and_drives_are_judged(tmp_path):
         dict(phases=[dict(period=[4.0], seed=[1, 2])], drive=[dict(period=[4.0], drive=["displacement", "velocity"])]),
     )
     turns, climbs, turns_over = phase_claims(campaign, campaign.sweep("phases"))
-    # The made-up motion swings as 0.3 sin(2wt) and is smooth: each cycle of the series is the same.
+    # The made-up motion oscillates as 0.3 sin(2wt): each cycle of the series is the same.
     assert climbs.measured.value == pytest.approx(SWING, rel=0.02) and climbs.verdict is Verdict.REPRODUCED
     assert turns.measured.value == pytest.approx(0, abs=0.02 * SWING)
     assert turns_over.measured.value == pytest.approx(SWING - abs(law(dict(KEYS))), abs=0.05 * SWING)
