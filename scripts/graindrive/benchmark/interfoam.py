@@ -167,12 +167,12 @@ class Mesh:
 
 
 def vector(*numbers):
-    """Return a vector in OpenFOAM's words."""
+    """Return a vector in OpenFOAM's syntax."""
     return f"({' '.join(f'{number:.15g}' for number in numbers)})"
 
 
 def listed(entries):
-    """Return a list in OpenFOAM's words."""
+    """Return a list in OpenFOAM's syntax."""
     return f"{len(entries)}\n(\n" + "\n".join(entries) + "\n)"
 
 

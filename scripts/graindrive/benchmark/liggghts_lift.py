@@ -107,7 +107,7 @@ def dragged(stage, material, gravity, bulk_gravity, diameter, steps, every, fold
 
     Forces are those on the cylinder and on the base [N], a dict of `COLUMNS`, from the scene's start on; places (n, 3) [m]
     stand in the order of `spheres_of`. material is a `HertzRestitutionSpheres`, diameter that of the cylinder [m].
-    RuntimeError with LIGGGHTS's words if it fails.
+    RuntimeError with LIGGGHTS's output if it fails.
     """
     from yade import O
 
