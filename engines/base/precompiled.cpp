@@ -1,1 +1,1 @@
-/// Nothing but the headers that the rooms share, for CMake to compile them once.
+/// The headers that all rooms share, so that CMake compiles them once.

@@ -73,13 +73,13 @@ Domain::Domain(const Grid& grid, const Distance& distance, double half_width, co
 WallLayer::WallLayer(const Grid& grid, const Domain& domain, const Distance& distance, double half_width)
 {
 	const double h = grid.spacing,
-				 inside = half_width + 0.75 * h;  // of that depth the four cells around a point are mostly fluid
+				 inside = half_width + 0.75 * h;  // at this depth the four cells around a point are mostly fluid
 	grid.for_cells([&](int i, int j, std::size_t c) {
 		if (domain.cell_open[c] >= 1) return;
 		const double x = grid.centre_x(i), y = grid.centre_y(j), e = 0.25 * h;
 		double nx = distance(x + e, y) - distance(x - e, y), ny = distance(x, y + e) - distance(x, y - e);
 		const double length = std::hypot(nx, ny);
-		if (!(length > 0)) return;  // on the solid's own middle line: nothing is nearest
+		if (!(length > 0)) return;  // on the solid's middle line there is no nearest point
 		const double way = (inside - distance(x, y)) / length;
 		const double column = (x + way * nx - grid.low_x) / h - 0.5, row = (y + way * ny - grid.low_y) / h - 0.5;
 		const int left = int(std::floor(column)), below = int(std::floor(row));

@@ -1,4 +1,4 @@
-/// Differences and means between cells, faces and nodes.
+/// Computes stresses from differences and means between cells, faces and nodes.
 #include "engines/continuum/stresses.hpp"
 
 #include <cmath>

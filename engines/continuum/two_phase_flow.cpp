@@ -1,4 +1,5 @@
-/// One step: viscosity and forces at the present state, prediction, pressure of the rheology, projection, transport of the surface.
+/// One step: viscosity and forces at the present state, prediction, pressure of the rheology, projection, transport of the
+/// surface.
 #include "engines/continuum/two_phase_flow.hpp"
 
 #include <algorithm>
@@ -111,12 +112,13 @@ TwoPhaseFlow::TwoPhaseFlow(const Grid& grid, const Domain& domain, const Fluids&
 	find_material();
 	find_forces();
 	now.advection_before = advected;
-	find_pressure();  // that of rest: nothing flows yet but the wall
+	find_pressure();  // the pressure at rest: only the wall moves
 	now.pressure_before = now.pressure;
 	now.potential = now.pressure;
 }
 
-/// `work(density, component, f, next)`: `component` picks x or y of FaceValues, `next` is the distance of the cells beside the face.
+/// `work(density, component, f, next)`: `component` picks x or y of FaceValues, `next` is the distance of the cells beside the
+/// face.
 template <class Work>
 void TwoPhaseFlow::for_faces(Work&& work)
 {
@@ -224,9 +226,10 @@ void TwoPhaseFlow::find_material()
 	pressures.update(coefficients);
 }
 
-/// (26), (29) in cells, and at nodes from the shear rate and the mean pressure there: the shear stress over the pressure, mu(I), hardly
-/// changes with the rate, so that a viscosity between two cells that errs by a tenth would double the rate. A node beside a cell of gas
-/// alone is gas: the shear stress of both fluids at their surface is that of the gas, and faces in the gas would else feel the grains'.
+/// (26), (29) in cells, and at nodes from the shear rate and the mean pressure there: the shear stress over the pressure, mu(I),
+/// hardly changes with the rate, so that a viscosity between two cells that errs by a tenth would double the rate. A node beside
+/// a cell of gas alone is gas: the shear stress of both fluids at their surface is that of the gas, and faces in the gas would
+/// else feel the grains'.
 void TwoPhaseFlow::find_viscosity()
 {
 	shear_rate(g, rates, rate);
@@ -265,8 +268,9 @@ void TwoPhaseFlow::find_forces()
 		[&](const Values&, auto component, std::size_t f, std::size_t) { component(viscous)[f] *= component(over_density)[f]; });
 }
 
-/// div(chi/rho grad p) = div{chi (v/dt + A + B + g) + (1 - chi) v_wall/dt}. Oba, Otsuki (2025), (46), leaves out chi v/dt; its own (47), of
-/// which it is the divergence, has the term, and without it the wall's velocity alone makes pressures of v_wall spacing/dt.
+/// div(chi/rho grad p) = div{chi (v/dt + A + B + g) + (1 - chi) v_wall/dt}. Oba, Otsuki (2025), (46), leaves out chi v/dt; its
+/// own (47), of which it is the divergence, has the term, and without it the wall's velocity alone makes pressures of v_wall
+/// spacing/dt.
 void TwoPhaseFlow::find_pressure()
 {
 	const double over_dt = 1 / how.time_step;
@@ -310,7 +314,8 @@ void TwoPhaseFlow::predict()
 	fill_ghosts(g, predicted, how.edge);
 }
 
-/// v* = chi (v + delta) + (1 - chi) v_wall, (1 - nu_0 dt/2 laplace) delta = dt ((3 A - A')/2 - grad S/rho + B + g): (42), (43), as a change.
+/// v* = chi (v + delta) + (1 - chi) v_wall, (1 - nu_0 dt/2 laplace) delta = dt ((3 A - A')/2 - grad S/rho + B + g): (42), (43),
+/// as a change.
 void TwoPhaseFlow::predict_split()
 {
 	const double dt = how.time_step, over_spacing = 1 / g.spacing;
@@ -355,8 +360,8 @@ void TwoPhaseFlow::predict_full()
 
 /// div(chi/rho grad sigma) = div v*/dt; v = v* - dt chi/rho grad sigma; S += sigma - nu_0/2 rho div v*: (38), (44), (45).
 ///
-/// In a fluid of one density the last term is (38)'s nu_0 dt/2 laplace sigma. Across a surface sigma has a kink, of which (38) makes
-/// spikes in S that grow without bound at a ratio of densities of 1000.
+/// In a fluid of one density the last term is (38)'s nu_0 dt/2 laplace sigma. Across a surface sigma has a kink, of which (38)
+/// makes spikes in S that grow without bound at a ratio of densities of 1000.
 void TwoPhaseFlow::project()
 {
 	const double dt = how.time_step, over_spacing = 1 / g.spacing;
@@ -381,7 +386,7 @@ void TwoPhaseFlow::project()
 	fill_ghosts(g, now.potential);
 }
 
-/// A wall is stairs on the grid, over which the fluid is carried out and in: what that changes of the area is given back.
+/// On the grid a wall is a staircase, through which the flow carries some fluid. Restores the area that this has changed.
 void TwoPhaseFlow::move_surface()
 {
 	const double before = area();
@@ -410,7 +415,7 @@ void TwoPhaseFlow::require_followed()
 	double fastest = 0;
 	for_faces([&](const Values&, auto component, std::size_t f, std::size_t) {
 		const double speed = std::abs(component(now.velocity)[f]);
-		fastest = speed <= fastest ? fastest : speed;  // keeps what is not a number
+		fastest = speed <= fastest ? fastest : speed;  // keeps nan
 	});
 	last.courant = fastest * how.time_step / g.spacing;
 	if (last.courant < 0.5) return;

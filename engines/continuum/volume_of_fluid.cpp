@@ -10,11 +10,11 @@ namespace graindrive::continuum {
 
 namespace {
 
-constexpr double pure = 1e-6;  // a cell closer than that to empty or full has no surface
+constexpr double pure = 1e-6;  // a cell closer than this to empty or full has no surface
 
 /// Integral of (1 + s tanh(beta (x - x_0)))/2 over the part of a cell of unit length that leaves it, with mean a. With
-/// B = exp(2 beta x_0), cosh(beta (1 - x_0))/cosh(beta (1 - c - x_0)) = exp(beta c) (1 + B q)/(1 + B q exp(2 beta c)), q = exp(-2 beta),
-/// and likewise at the cell's other end.
+/// B = exp(2 beta x_0), cosh(beta (1 - x_0))/cosh(beta (1 - c - x_0)) = exp(beta c) (1 + B q)/(1 + B q exp(2 beta c)), q = exp(-2
+/// beta), and likewise at the cell's other end.
 double thinc(double a, double sign, double courant, double beta)
 {
 	const double full = sign > 0 ? 2 - 2 * a : 2 * a, rest = 2 - full, c = std::abs(courant);
@@ -95,7 +95,7 @@ void VolumeOfFluid::sweep(Values& fraction, const Sweep& s, double scale, bool s
 		}
 	grid.for_cells([&](int, int, std::size_t c) {
 		const double own = scale * (velocity[c + s.along] * moves[c + s.along] - velocity[c] * moves[c]);
-		// What a projection leaves of the divergence must not change the area: both directions together dilate nothing.
+		// The divergence that the projection leaves must not change the area: the dilatations of both directions cancel.
 		const double dilation = second && whole[c] > 0 ? -first_dilation[c] : own;
 		if (!second) first_dilation[c] = own;
 		fraction[c] += flux[c] - flux[c + s.along] + above_half[c] * dilation;

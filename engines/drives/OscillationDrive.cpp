@@ -37,7 +37,7 @@ int OscillationDrive::axis() const
 
 namespace {
 
-constexpr std::size_t period_setting = 1;  // its place in `settings`
+constexpr std::size_t period_setting = 1;  // its index in `settings`
 
 }  // namespace
 
@@ -54,7 +54,7 @@ Oscillation OscillationDrive::motion() const
 		by_displacement ? Oscillation::Form::displacement : Oscillation::Form::velocity };
 }
 
-/// The angle runs on with the period that the leg before had.
+/// The angle at the start of a leg, which continues from the leg before with that leg's period.
 void OscillationDrive::begin_leg(Real place)
 {
 	legPhase = first_leg() || phaseAssigned ? phase : legPhase + 2 * pi * leg_now() / leg[period_setting];

@@ -7,7 +7,7 @@ namespace graindrive {
 
 namespace {
 
-/// As YADE's own laws have it: what velGrad makes of the way to the image, unless velocities do not follow the cell (homoDeform = 0).
+/// As in YADE's own laws: velGrad times the distance to the image, or 0 if velocities do not follow the cell (homoDeform = 0).
 Vector3r image_velocity(const yade::Scene& scene, const yade::Interaction& contact)
 {
 	if (!scene.isPeriodic || scene.cell->homoDeform == 0) return Vector3r::Zero();

@@ -46,7 +46,7 @@ struct Extent {
 	Real low, width;  ///< [m] along x
 };
 
-/// Where the bodies of a scene lie along x, by their lower ends; in a periodic cell these lie in [0, period).
+/// Extents of all bodies along x, sorted by their lower ends; in a periodic cell these lie in [0, period).
 std::vector<Extent> extents(const yade::Scene& scene, Real period)
 {
 	std::vector<Extent> found;
@@ -154,7 +154,7 @@ bool is_near(const geometry::Bounds<3>& box, const geometry::Vec<3>& point, Real
 	return true;
 }
 
-/// What Ig2_Solid_Sphere_ScGeom will find of a sphere at `centre`, in the solid's own image.
+/// The contact that Ig2_Solid_Sphere_ScGeom will find for a sphere at `centre`, in the solid's own image.
 PairGeometry touch_of(const Solid& solid, const geometry::RigidMotion<3>& place, const Vector3r& centre, Real radius)
 {
 	const geometry::Nearest<3> nearest = place.nearest(*solid.surface(), vec(centre));

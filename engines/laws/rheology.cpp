@@ -20,7 +20,7 @@ FrictionConstants checked(const FrictionConstants& given)
 	return given;
 }
 
-/// Where f changes its sign between a and b, to rounding; f(a) and f(b) have different signs.
+/// The zero of f between a and b to round-off; f(a) and f(b) have different signs.
 template <class Function>
 Real bisected(Function&& f, Real a, Real b)
 {

@@ -227,7 +227,7 @@ def test_a_damped_bed_with_a_clump_settles_as_on_yades_loop(law, damps_gravity):
     grain_loop.use_grain_loop()
     disks.run(BED_STEPS)
     # At 0.3 a contact turns by 3e-5 a step and YADE lengthens its force by 5e-10; over 600 steps that makes 3e-7 of velocities
-    # and spins of 1, times what the crowd makes of a difference, about 10 where no dashpots damp it.
+    # and spins of 1, times the growth of a difference by collisions, about 10 without dashpots.
     found = moving_parts()
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5)
     np.testing.assert_allclose(found[:, :3], expected[:, :3], rtol=0, atol=1e-7)

@@ -69,7 +69,7 @@ Vector3r ContactForceBinner::zero_direction()
 
 namespace {
 
-/// A contact's forces in the plane across an axis; in a scene of disks they lie there already, and nothing changes, not even a bit.
+/// A contact's forces in the plane across an axis; those of disks already lie there and are not changed in any bit.
 struct InPlane {
 	Vector3r normal, tangential;
 
@@ -77,7 +77,8 @@ struct InPlane {
 		: normal(across(contact.normal_force, axis)),
 		  tangential(across(contact.tangential_force, axis))
 	{
-		// The tangent plane of a normal that leans towards the axis holds directions whose shadows are not across the normal's.
+		// If the normal is oblique to the axis, projections of tangential directions need not be perpendicular to that of the
+		// normal.
 		if (contact.normal_force.dot(axis) != 0 && !normal.isZero(0)) tangential = across(tangential, normal.normalized());
 	}
 
@@ -93,7 +94,7 @@ void ContactForceBinner::add(const BodyContact& contact, const Vector3r& e1, con
 	const Vector3r force = contact.normal_force + contact.tangential_force;
 	const InPlane in_plane(contact, planeNormal.normalized());
 	const Vector3r outward = std::cos(theta) * e1 + std::sin(theta) * e2, along = std::cos(theta) * e2 - std::sin(theta) * e1;
-	// Sign from the side that the normal force pushes to; magnitude from the law, whatever the shape's own normal is.
+	// The sign follows from the direction of the normal force, the magnitude from the law; the shape's normal is not used.
 	const Real inward_force = in_plane.normal.dot(outward) <= 0 ? in_plane.normal.norm() : -in_plane.normal.norm();
 	const Real along_force = in_plane.tangential.dot(along) >= 0 ? in_plane.tangential.norm() : -in_plane.tangential.norm();
 	around.shares(theta, shares_);

@@ -190,7 +190,8 @@ void FieldAverager::add_sample(const Frame& frame, Real* sums) const
 	if (stress) add_contacts(by, frame, sums);
 }
 
-/// A clump is true in YADE at every step; a single disk is asked of the loop, which may not have written it.
+/// YADE's state of a clump is up to date at every step; that of a single disk is read from the loop, which may not have written
+/// it.
 FieldAverager::Frame FieldAverager::frame()
 {
 	if (body < 0) return { origin, Vector3r::Zero() };
@@ -219,7 +220,7 @@ void FieldAverager::leave_out_what_is_no_grain()
 								 "blocked along z or about x or y; set dimensions=2 for disks");
 }
 
-/// Areas of spheres at different heights would be added up without a word.
+/// Refuses spheres at different heights, whose areas would be added up.
 void FieldAverager::require_a_plane() const
 {
 	const GrainState* first = nullptr;

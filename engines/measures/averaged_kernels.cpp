@@ -38,7 +38,7 @@ Real gaussian_in_half_strip(Real u, Real a)
 	return std::copysign(alpha / 2 - pi * owen + sector, u);
 }
 
-/// Of a line that is almost along the axis hardly any shadow is left, and a difference of integrals over it would be round-off.
+/// The projection of a line almost along the axis is very short, and a difference of integrals over it would be round-off.
 bool is_a_point(const Vector3r& shadow, Real scale) { return shadow.squaredNorm() < 1e-14 * scale * scale; }
 
 Real square_distance(const Vector3r& from, const Vector3r& branch, const Vector3r& point)

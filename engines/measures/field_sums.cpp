@@ -1,4 +1,4 @@
-/// The sums at every point of a field: grains and contacts join, fields are read.
+/// The sums at every point of a field: adds grains and contacts, and computes fields.
 #include "engines/measures/field_sums.hpp"
 
 #include <limits>
@@ -36,7 +36,7 @@ void add_part(Real* sums, Real share, Real grain_density, const Vector<D>& v, bo
 		for (int b = a; b < D; ++b) *kinetic++ += deviation(a, b);
 }
 
-/// What a grid that is averaged along an axis sees of a scene: all that lies in the window along it, moved to the axis's middle.
+/// The part of a scene that counts in a grid averaged along an axis: all within the window, moved to the axis's middle.
 template <int D>
 class AveragedAxis {
 public:
@@ -48,12 +48,12 @@ public:
 		  periods(plan.periods)
 	{
 		if (axis < 0 || !(periods[axis] > 0)) return;
-		// A window as long as the period sees all grains and all lines once, wherever they are cut.
+		// A window as long as the period contains all grains and lines exactly once, wherever it cuts them.
 		whole = std::abs(plan.grid.length - periods[axis]) <= 1e-9 * periods[axis];
 		if (whole) periods[axis] = 0;
 	}
 
-	/// Calls visit(shift) for every image that the window may see.
+	/// Calls visit(shift) for every image that may be in the window.
 	template <class Visit>
 	void visit_images(const FieldGrid<D>& grid, Vector<D> centre, Vector<D> reach, Real kernel_reach, Visit&& visit) const
 	{
@@ -62,7 +62,7 @@ public:
 		if (whole) centre[axis] = middle;
 		grid.visit_images(centre, reach, periods, visit);
 	}
-	/// False for a grain that lies beside the window; others are moved to the axis's middle.
+	/// False for a grain outside of the window; others are moved to the axis's middle.
 	bool takes(Vector<D>& at) const
 	{
 		if (axis < 0) return true;
@@ -95,7 +95,8 @@ private:
 	bool whole = false;
 };
 
-/// v + omega x r = (v_x - omega r_y, v_y + omega r_x); the sign in Kumar et al., (A2), is a misprint. Kernels in space have no lever.
+/// v + omega x r = (v_x - omega r_y, v_y + omega r_x); the sign in Kumar et al., (A2), is a misprint. Kernels in space have no
+/// lever.
 template <int D>
 Vector<D> velocity_at(const FieldGrain<D>& grain, const Vector<D>& lever)
 {

@@ -47,7 +47,7 @@ void require_grains(const std::vector<Real>& radii, const Points<D>& centres, co
 	}
 }
 
-/// About as many cells as grains: narrower ones would cost memory and find nothing more.
+/// About as many cells as grains: narrower cells would cost memory without a gain.
 template <int D>
 CellGrid<D>::CellGrid(const Box<D>& box, Real reach, std::size_t expected) : box_(box)
 {

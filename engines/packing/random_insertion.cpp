@@ -1,4 +1,4 @@
-/// One cell grid for the grains; obstacles, which may be large, stand in a grid of their own.
+/// One cell grid holds the grains; obstacles, which may be large, are in a separate grid.
 #include "engines/packing/random_insertion.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool touch(const Box<D>& box, const Point<D>& a, Real radius_a, const Point<D>& 
 	return box.between(a, b).squaredNorm() < reach * reach;
 }
 
-/// Grains in a grid, to be asked whether a place is free.
+/// Grains in a grid that tests whether a place is free.
 template <int D>
 class Occupied {
 public:

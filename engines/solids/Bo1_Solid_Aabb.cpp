@@ -23,7 +23,7 @@ const char* const Bo1_Solid_Aabb::documentation =
 
 namespace {
 
-constexpr Real far_away = 1e100;  // [m]: finite, so that the collider's sums are numbers
+constexpr Real far_away = 1e100;  // [m]: finite, so that the collider's sums are finite
 constexpr Real gap_over_radius = 1.9;
 
 bool may_turn(const yade::State& state)
@@ -54,10 +54,11 @@ Real smallest_radius(const yade::Scene& scene)
 
 /// Cuts endless sides to just under two periods.
 ///
-/// The collider moves a bound into the cell by whole periods, counted in an int: a bound at 1e100 never gets there, and its second sort
-/// does not end. A box longer than a period overlaps everything along that axis. The first sort walks through the cell from the lower
-/// to the upper bound, which must lie less than a sphere below the lower one, so that a sphere that begins in the gap ends behind it;
-/// and not above it after the collider has widened the box on each side by its verletDist, by default half of the smallest radius.
+/// The collider moves a bound into the cell by whole periods, counted in an int: a bound at 1e100 never gets there, and its
+/// second sort does not end. A box longer than a period overlaps everything along that axis. The first sort walks through the
+/// cell from the lower to the upper bound, which must lie less than a sphere below the lower one, so that a sphere that begins in
+/// the gap ends behind it; and not above it after the collider has widened the box on each side by its verletDist, by default
+/// half of the smallest radius.
 void cut_to_periods(yade::Bound& box, const yade::Scene& scene)
 {
 	const Real gap = gap_over_radius * smallest_radius(scene);

@@ -35,7 +35,7 @@ bool Ig2_Solid_Sphere_ScGeom::go(const yade::shared_ptr<yade::Shape>& first, con
 	const Vector3r centre = state2.pos + shift2;
 	Nearest<3> nearest{};
 	try {
-		if (!solid.surface()) return false;  // Bo1_Solid_Aabb has complained
+		if (!solid.surface()) return false;  // Bo1_Solid_Aabb has reported the error
 		nearest = motion_of(state1.pos, state1.ori).nearest(*solid.surface(), vec(centre));
 	} catch (const std::exception& error) {
 		complain(*scene, "the Solid of body " + std::to_string(interaction->getId1()) +

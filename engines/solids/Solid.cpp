@@ -1,4 +1,4 @@
-/// The class index, and the surface behind the recipe.
+/// The class index, and the surface that the recipe describes.
 #include "engines/solids/Solid.hpp"
 
 namespace graindrive {

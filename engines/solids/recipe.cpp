@@ -16,11 +16,11 @@ namespace {
 
 using namespace geometry;
 
-constexpr int deepest = 200;                    // surfaces within surfaces: each costs a call at every question
-constexpr std::size_t longest_word_shown = 40;  // of a damaged recipe
+constexpr int deepest = 200;                    // surfaces within surfaces: each costs a call in every evaluation
+constexpr std::size_t longest_word_shown = 40;  // in messages on damaged recipes
 constexpr const char* own_recipe = "use the text of Surface.recipe";
 
-/// What the reader refuses; what a surface refuses is another std::invalid_argument.
+/// The reader's error, as distinct from the std::invalid_argument of a surface.
 class Damaged : public std::invalid_argument {
 	using std::invalid_argument::invalid_argument;
 };
@@ -85,7 +85,7 @@ SharedSurface<3> read_complement(RecipeReader& r) { return shared(Complement<3>(
 SharedSurface<3> read_union(RecipeReader& r) { return shared(Union<3>(r.surfaces(r.count("number of parts")))); }
 SharedSurface<3> read_intersection(RecipeReader& r) { return shared(Intersection<3>(r.surfaces(r.count("number of parts")))); }
 
-/// One line a kind.
+/// One line for each kind of surface.
 std::map<std::string, ReadSurface, std::less<>>& table()
 {
 	static std::map<std::string, ReadSurface, std::less<>> kinds{

@@ -1,4 +1,4 @@
-/// The rules, and the one complaint.
+/// The rules for solids, and the common error message.
 #include "engines/solids/solid_checks.hpp"
 
 #include <mutex>

@@ -256,7 +256,7 @@ def test_both_models_leave_their_flows_side_by_side_and_a_resumed_run_keeps_the_
 @pytest.mark.parametrize(
     "keys, low, high",
     [
-        # The slope of a thin bed's surface follows from friction; in a nearly full drum the centre of mass does not show the slope.
+        # A thin bed slopes by its friction; in a nearly full drum the centre of mass does not show the slope of the surface.
         (dict(filling=0.2), SLOW, FAST + 3),
         (dict(filling=0.9), 0, 60),
         # A fluid of small viscosity slopes less than grains; a large viscosity adds its own resistance.

@@ -84,7 +84,7 @@ def test_a_drum_is_filmed_frame_by_frame(tmp_path, of_grains, of_flow, panels):
 
 
 def test_the_wall_turns_in_the_picture_of_grains_and_of_the_continuum(tmp_path):
-    """The sectors of the wall have turned by Omega t, those of the grains' disks and those of the continuum's rim alike."""
+    """The sectors of the wall have turned by Omega t, both of the grains' disks and of the continuum's rim."""
     out, t = make(tmp_path / "run", (0, 20.0), (0, 20.0)), 20.0
     figure, draw = animation.prepared(Run(out))
     draw(animation.Moments(Run(out))[1])

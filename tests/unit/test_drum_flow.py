@@ -159,7 +159,7 @@ def test_errors_of_a_mean_over_blocks_are_those_of_independent_blocks():
     assert found["packing_fraction"] == pytest.approx(0.82 * factors.mean(), rel=1e-12)
     # the jackknife of a mean is the usual error
     assert found["packing_fraction_err"] == pytest.approx(0.82 * factors.std(ddof=1) / np.sqrt(12), rel=1e-9)
-    assert found["thickness_over_diameter_err"] < 1e-9  # all blocks flow alike
+    assert found["thickness_over_diameter_err"] < 1e-9  # all blocks have the same flow
 
 
 def test_one_block_has_no_error():

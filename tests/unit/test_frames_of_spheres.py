@@ -80,7 +80,7 @@ def test_both_loops_show_the_same():
 
 
 def made_up(out, export):
-    """A run with two frames of a crowd; return the folder and its pictures."""
+    """A run with two frames of many spheres; return the folder and its frames."""
     ids, shown = crowd("grain"), []
     with RunFolder(Parameters(out=str(out), export=export), study="wiggle") as folder:
         folder.note(dt=DT)

@@ -136,7 +136,7 @@ def test_a_paper_that_is_true_is_reproduced(tmp_path):
         )
     order = [c for c in claims if "rises faster than" in c.text]
     assert len(order) == 8 and {c.verdict for c in order} == {Verdict.REPRODUCED}
-    sinking = [c for c in claims if "sinks faster than" in c.text]  # all alike in these runs
+    sinking = [c for c in claims if "sinks faster than" in c.text]  # all the same in these runs
     assert len(sinking) == 6 and all(c.measured.value == pytest.approx(0, abs=4 * NOISE) for c in sinking)
     assert judged["disk: it rises faster at A 5 than at A 3; difference of mean V_y at T > 2"] is Verdict.REPRODUCED
     assert all(c.verdict is Verdict.REPRODUCED for c in claims if "sinking is fastest at T = 1" in c.text)
