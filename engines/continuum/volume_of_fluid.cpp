@@ -13,8 +13,8 @@ namespace {
 constexpr double pure = 1e-6;  // a cell closer than this to empty or full has no surface
 
 /// Integral of (1 + s tanh(beta (x - x_0)))/2 over the part of a cell of unit length that leaves it, with mean a. With
-/// B = exp(2 beta x_0), cosh(beta (1 - x_0))/cosh(beta (1 - c - x_0)) = exp(beta c) (1 + B q)/(1 + B q exp(2 beta c)), q = exp(-2
-/// beta), and likewise at the cell's other end.
+/// B = exp(2 beta x_0), cosh(beta (1 - x_0))/cosh(beta (1 - c - x_0)) = exp(beta c) (1 + B q)/(1 + B q exp(2 beta c)),
+/// q = exp(-2 beta), and likewise at the cell's other end.
 double thinc(double a, double sign, double courant, double beta)
 {
 	const double full = sign > 0 ? 2 - 2 * a : 2 * a, rest = 2 - full, c = std::abs(courant);

@@ -84,8 +84,8 @@ TEST(RandomInsertion, is_the_same_for_a_seed_and_pinned_for_every_machine)
 
 TEST(RandomInsertion, fills_the_box_evenly)
 {
-	// Chi-square over 8 x 8 parts; hard disks at area fraction 0.3 vary less than Poisson points, for which chi-square is 63 +-
-	// 11.
+	// Chi-square over 8 x 8 parts; hard disks at area fraction 0.3 vary less than Poisson points, for which chi-square is
+	// 63 +- 11.
 	const Box<2> box = rectangle(0, 80, 0, 80, true);
 	const auto radii = uniform_radii(2400, 0.9, 1.1, 5);
 	std::vector<int> count(64, 0);

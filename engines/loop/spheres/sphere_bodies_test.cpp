@@ -73,8 +73,8 @@ Turn<3> turned_by_euler(const RigidBody<3>& body, double time)
 
 TEST(SphereBodies, a_symmetric_top_precesses_as_euler_says)
 {
-	// w = L/I_1 + (1 - I_3/I_1) w_3 e_3: the symmetry axis turns about L at |L|/I_1, and the body about this axis at (1 -
-	// I_3/I_1) w_3.
+	// w = L/I_1 + (1 - I_3/I_1) w_3 e_3: the symmetry axis turns about L at |L|/I_1, and the body about this axis at
+	// (1 - I_3/I_1) w_3.
 	RigidBody<3> top = free_body(1, { 0.5, 0.5, 0.9 });
 	top.spin = { 1, 2, -1.5 };
 	const Vec<3> momentum = angular_momentum(top);
