@@ -7,11 +7,13 @@
 
 namespace graindrive {
 
-namespace {
-
 namespace py = boost::python;
 namespace np = boost::python::numpy;
-using namespace continuum;
+
+namespace continuum {
+
+namespace {
+
 using solids::Described;
 
 void take(const char*, double& number, const py::object& value) { number = py::extract<double>(value); }
@@ -185,8 +187,11 @@ py::object attribute(Get&& get)
 
 }  // namespace
 
+}  // namespace continuum
+
 void bind_continuum()
 {
+	using namespace continuum;
 	py::class_<TwoPhaseFlow, boost::shared_ptr<TwoPhaseFlow>, boost::noncopyable>("TwoPhaseFlow",
 		"Grains and gas as two incompressible fluids in a moving vessel, in two dimensions; graindrive.continuum.continuum\n"
 		"runs them.\n\n"

@@ -86,4 +86,4 @@ void DrumDrive::action()
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::DrumDrive, "DrumDrive")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::DrumDrive)

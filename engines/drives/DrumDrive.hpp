@@ -38,3 +38,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::DrumDrive, "DrumDrive")

@@ -79,4 +79,4 @@ void OscillationDrive::action()
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::OscillationDrive, "OscillationDrive")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::OscillationDrive)

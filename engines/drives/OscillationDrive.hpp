@@ -39,3 +39,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::OscillationDrive, "OscillationDrive")

@@ -101,4 +101,4 @@ void ShearDrive::set_flow()
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::ShearDrive, "ShearDrive")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::ShearDrive)

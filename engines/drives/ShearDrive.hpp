@@ -53,3 +53,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::ShearDrive, "ShearDrive")

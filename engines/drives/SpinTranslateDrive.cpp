@@ -75,4 +75,4 @@ void SpinTranslateDrive::action()
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::SpinTranslateDrive, "SpinTranslateDrive")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::SpinTranslateDrive)

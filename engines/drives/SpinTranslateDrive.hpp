@@ -37,3 +37,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::SpinTranslateDrive, "SpinTranslateDrive")

@@ -64,5 +64,5 @@ void Ip2_FrictMat_FrictMat_ContactPhys::go(const yade::shared_ptr<yade::Material
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::ContactPhys, "ContactPhys")
-BOOST_CLASS_EXPORT_GUID(graindrive::Ip2_FrictMat_FrictMat_ContactPhys, "Ip2_FrictMat_FrictMat_ContactPhys")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::ContactPhys)
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Ip2_FrictMat_FrictMat_ContactPhys)

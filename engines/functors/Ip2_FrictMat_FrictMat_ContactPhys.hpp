@@ -29,3 +29,5 @@ public:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::Ip2_FrictMat_FrictMat_ContactPhys, "Ip2_FrictMat_FrictMat_ContactPhys")

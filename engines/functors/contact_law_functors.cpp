@@ -25,6 +25,6 @@ const char* const Law2_ScGeom_ContactPhys_SpringDashpot::documentation =
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::Law2_ScGeom_ContactPhys_HertzHistory, "Law2_ScGeom_ContactPhys_HertzHistory")
-BOOST_CLASS_EXPORT_GUID(graindrive::Law2_ScGeom_ContactPhys_HertzRestitution, "Law2_ScGeom_ContactPhys_HertzRestitution")
-BOOST_CLASS_EXPORT_GUID(graindrive::Law2_ScGeom_ContactPhys_SpringDashpot, "Law2_ScGeom_ContactPhys_SpringDashpot")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Law2_ScGeom_ContactPhys_HertzHistory)
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Law2_ScGeom_ContactPhys_HertzRestitution)
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Law2_ScGeom_ContactPhys_SpringDashpot)

@@ -34,3 +34,7 @@ void for_each_law_functor(Visit&& visit)
 }
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::Law2_ScGeom_ContactPhys_HertzHistory, "Law2_ScGeom_ContactPhys_HertzHistory")
+BOOST_CLASS_EXPORT_KEY2(graindrive::Law2_ScGeom_ContactPhys_HertzRestitution, "Law2_ScGeom_ContactPhys_HertzRestitution")
+BOOST_CLASS_EXPORT_KEY2(graindrive::Law2_ScGeom_ContactPhys_SpringDashpot, "Law2_ScGeom_ContactPhys_SpringDashpot")

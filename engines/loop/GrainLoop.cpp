@@ -184,4 +184,4 @@ void GrainLoop::look(SceneView& view, bool with_contacts)
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::GrainLoop, "GrainLoop")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::GrainLoop)

@@ -123,6 +123,7 @@ public:
 	long syncEvery = 0;
 	std::vector<int> watched;
 	std::vector<std::string> trusted;
+	static constexpr std::size_t numbers_per_wall = 11;  ///< in wallSettings
 	std::vector<Real> springs, loads, wallSettings, wallSprings, bounds;
 	Real targetAreaFraction = 0;
 	bool trackEnergy = false;
@@ -167,3 +168,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::GrainLoop, "GrainLoop")

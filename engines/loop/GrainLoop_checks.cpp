@@ -7,12 +7,6 @@
 
 namespace graindrive {
 
-namespace {
-
-constexpr std::size_t numbers_per_wall = 11;
-
-}  // namespace
-
 void GrainLoop::check() const
 {
 	const std::vector<std::string> known = laws::law_names();

@@ -9,7 +9,6 @@ namespace graindrive {
 namespace {
 
 constexpr const char* kept_by_the_loop[] = { "springs", "wallSprings", "wallSettings" };
-constexpr std::size_t numbers_per_wall = 11;
 
 void append(std::vector<Real>& numbers, const loop::Wall<3>& w)
 {

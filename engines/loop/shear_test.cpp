@@ -235,7 +235,9 @@ TEST(Shear, processors_and_threads_give_the_same_bits)
 	if (best == Processor::portable) GTEST_SKIP() << "this machine has portable code alone";
 	const auto narrow = moved("avx2", 1);
 	EXPECT_TRUE(same_bits(*narrow, *moved("avx2", 3)));
-	if (best == Processor::avx512) EXPECT_TRUE(same_bits(*narrow, *moved("avx512", 1)));
+	if (best == Processor::avx512) {
+		EXPECT_TRUE(same_bits(*narrow, *moved("avx512", 1)));
+	}
 }
 
 TEST(Shear, who_looks_leaves_no_trace)

@@ -15,8 +15,6 @@ namespace {
 
 constexpr double large = 1.5;  // over the median radius: larger grains would widen every cell of the search
 
-using yade::State;
-
 double median_radius(const yade::BodyContainer& bodies)
 {
 	std::vector<double> radii;
@@ -33,7 +31,7 @@ template <int D>
 constexpr const char* grain_word = D == 2 ? "disk" : "sphere";
 
 template <int D>
-RigidBody<D> rigid(const State& state)
+RigidBody<D> rigid(const yade::State& state)
 {
 	RigidBody<D> body;
 	body.place = in_loop<D>(state.pos);
@@ -46,22 +44,22 @@ RigidBody<D> rigid(const State& state)
 template <int D>
 Grain<D> grain(const yade::Body& body, double radius, double mass, int owner)
 {
-	const State& s = *body.state;
+	const yade::State& s = *body.state;
 	return { in_loop<D>(s.pos), in_loop<D>(s.vel), spin_in_loop<D>(s.angVel), radius, mass, owner };
 }
 
 }  // namespace
 
-bool is_frozen(const State& state)
+bool is_frozen(const yade::State& state)
 {
-	return state.blockedDOFs == State::DOF_ALL && state.vel.isZero(0) && state.angVel.isZero(0);
+	return state.blockedDOFs == yade::State::DOF_ALL && state.vel.isZero(0) && state.angVel.isZero(0);
 }
 
 template <int D>
-void read_state(const State& state, RigidBody<D>& body)
+void read_state(const yade::State& state, RigidBody<D>& body)
 {
-	constexpr unsigned places[] = { State::DOF_X, State::DOF_Y, State::DOF_Z };
-	constexpr unsigned spins[] = { State::DOF_RX, State::DOF_RY, State::DOF_RZ };
+	constexpr unsigned places[] = { yade::State::DOF_X, yade::State::DOF_Y, yade::State::DOF_Z };
+	constexpr unsigned spins[] = { yade::State::DOF_RX, yade::State::DOF_RY, yade::State::DOF_RZ };
 	body.velocity = in_loop<D>(state.vel), body.spin = spin_in_loop<D>(state.angVel);
 	for (int k = 0; k < D; ++k) body.responds[k] = body.mass > 0 && !(state.blockedDOFs & places[k]);
 	const bool may_turn = is_positive(body.inertia);
@@ -97,7 +95,7 @@ void follow_orientation(const yade::State& state, const YadeBodies::Turned& turn
 }
 
 template <int D>
-void write_motion(const Vec<D>& place, const Vec<D>& velocity, const Spin<D>& spin, State& state)
+void write_motion(const Vec<D>& place, const Vec<D>& velocity, const Spin<D>& spin, yade::State& state)
 {
 	for (int k = 0; k < D; ++k) state.pos[k] = place[k], state.vel[k] = velocity[k];
 	const Vector3r about = spin_in_yade(spin);
@@ -108,7 +106,7 @@ void write_motion(const Vec<D>& place, const Vec<D>& velocity, const Spin<D>& sp
 }
 
 template <int D>
-void write_state(const RigidBody<D>& body, const YadeBodies::Turned& turned, State& state)
+void write_state(const RigidBody<D>& body, const YadeBodies::Turned& turned, yade::State& state)
 {
 	write_motion<D>(body.place, body.velocity, body.spin, state);
 	state.ori = orientation(body, turned);
@@ -129,7 +127,7 @@ void require_alike(const yade::BodyContainer& bodies, const YadeBodies& map, Sce
 	Real z = 0;
 	for (std::size_t g = 0; g < map.grain_id.size(); ++g) {
 		const std::string name = "body " + std::to_string(map.grain_id[g]);
-		const State& state = *bodies[map.grain_id[g]]->state;
+		const yade::State& state = *bodies[map.grain_id[g]]->state;
 		if (g == 0) z = state.pos[2];
 		if (D == 2 && std::abs(state.pos[2] - z) > 1e-9 * scene.grains[g].radius)
 			throw std::invalid_argument("GrainLoop moves disks in one plane z = const; " + name +
@@ -175,7 +173,7 @@ void require_plain(const yade::Body& body, bool damping)
 		throw std::invalid_argument(name +
 									" is not bounded, so YADE's collider would not see it; set O.bodies[...].bounded=True, or "
 									"use YADE's loop");
-	const State& state = *body.state;
+	const yade::State& state = *body.state;
 	if (damping && !state.isDamped && !body.isClumpMember())
 		throw std::invalid_argument(name + " has state.isDamped=False, and GrainLoop damps all bodies alike; set it to True, or "
 										   "GrainLoop.damping to 0");
@@ -189,9 +187,10 @@ void require_plain(const yade::Body& body, bool damping)
 
 /// True if forces move the grain in all directions.
 template <int D>
-bool moves_freely(const State& state)
+bool moves_freely(const yade::State& state)
 {
-	constexpr unsigned needed = D == 2 ? State::DOF_X | State::DOF_Y | State::DOF_RZ : unsigned(State::DOF_ALL);
+	constexpr unsigned needed =
+		D == 2 ? yade::State::DOF_X | yade::State::DOF_Y | yade::State::DOF_RZ : unsigned(yade::State::DOF_ALL);
 	return !(state.blockedDOFs & needed);
 }
 
@@ -246,7 +245,7 @@ struct Reader {
 			throw std::invalid_argument(name + " is a member of a clump, which GrainLoop does not move; unite surfaces instead "
 											   "(graindrive.solids.surfaces: a | b), or use YADE's own loop");
 		if (!shape.surface()) throw std::invalid_argument(name + " has no surface; give it one: Solid(surfaces.ball(...))");
-		constexpr unsigned translations = State::DOF_X | State::DOF_Y | (D == 3 ? State::DOF_Z : 0);
+		constexpr unsigned translations = yade::State::DOF_X | yade::State::DOF_Y | (D == 3 ? yade::State::DOF_Z : 0);
 		if (!(body.state->mass > 0) && (body.state->blockedDOFs & translations) != translations)
 			throw std::invalid_argument(name + " may move and has no mass; give it one (state.mass), or block its x, y and z");
 		const int owner = map.body_of_id[id] = new_body(id, rigid<D>(*body.state));
@@ -269,7 +268,7 @@ struct Reader {
 			throw std::invalid_argument(std::string("GrainLoop moves ") + grain_word<D> + "s, clumps of " + grain_word<D> +
 										"s and Solids only; body " + std::to_string(id) +
 										" has another shape: remove it, make it a Solid, or use YADE's own loop");
-		const State& state = *body.state;
+		const yade::State& state = *body.state;
 		const bool watch = std::count(watched.begin(), watched.end(), id) > 0;
 		int owner = free_grain;
 		double mass = state.mass;
@@ -285,7 +284,7 @@ struct Reader {
 			if (is_frozen(state)) mass = HUGE_VAL;
 		}
 		if (owner != free_grain && std::visit([](const auto& law) { return law.weighs_members_alone; }, scene.law))
-			mass = state.blockedDOFs == State::DOF_ALL ? HUGE_VAL : state.mass;  // as in YADE's law
+			mass = state.blockedDOFs == yade::State::DOF_ALL ? HUGE_VAL : state.mass;  // as in YADE's law
 		map.grain_of_id[id] = int(scene.grains.size());
 		map.grain_id.push_back(id);
 		scene.grains.push_back(grain<D>(body, sphere->radius, mass, owner));
@@ -318,11 +317,11 @@ YadeBodies read_yade(const yade::Scene& yade_scene, const std::vector<int>& watc
 
 template YadeBodies read_yade(const yade::Scene&, const std::vector<int>&, Scene<2>&);
 template YadeBodies read_yade(const yade::Scene&, const std::vector<int>&, Scene<3>&);
-template void read_state(const State&, RigidBody<2>&);
-template void read_state(const State&, RigidBody<3>&);
-template void write_state(const RigidBody<2>&, const YadeBodies::Turned&, State&);
-template void write_state(const RigidBody<3>&, const YadeBodies::Turned&, State&);
-template void write_motion(const Vec<2>&, const Vec<2>&, const double&, State&);
-template void write_motion(const Vec<3>&, const Vec<3>&, const Vec<3>&, State&);
+template void read_state(const yade::State&, RigidBody<2>&);
+template void read_state(const yade::State&, RigidBody<3>&);
+template void write_state(const RigidBody<2>&, const YadeBodies::Turned&, yade::State&);
+template void write_state(const RigidBody<3>&, const YadeBodies::Turned&, yade::State&);
+template void write_motion(const Vec<2>&, const Vec<2>&, const double&, yade::State&);
+template void write_motion(const Vec<3>&, const Vec<3>&, const Vec<3>&, yade::State&);
 
 }  // namespace graindrive::loop

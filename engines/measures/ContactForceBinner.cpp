@@ -160,4 +160,4 @@ Real ContactForceBinner::total_statistic(int which, bool variance) const
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::ContactForceBinner, "ContactForceBinner")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::ContactForceBinner)

@@ -72,3 +72,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::ContactForceBinner, "ContactForceBinner")

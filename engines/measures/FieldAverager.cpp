@@ -278,4 +278,4 @@ template FieldMeans<3> FieldAverager::means<3>(int, int) const;
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::FieldAverager, "FieldAverager")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::FieldAverager)

@@ -103,3 +103,5 @@ private:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::FieldAverager, "FieldAverager")

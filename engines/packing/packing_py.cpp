@@ -12,11 +12,12 @@
 
 namespace graindrive {
 
-namespace {
-
 namespace py = boost::python;
 namespace np = boost::python::numpy;
-using namespace graindrive::packing;
+
+namespace packing {
+
+namespace {
 
 /// A read-only view of array-like doubles of shape (n, columns), or (n,) if columns is 1.
 struct Table {
@@ -169,8 +170,11 @@ py::tuple deepest_in_space(const py::object& box, const std::string& periodic, c
 
 }  // namespace
 
+}  // namespace packing
+
 void bind_packing()
 {
+	using namespace packing;
 	np::initialize();
 	py::def("uniform_radii", &radii_in, (py::arg("n"), py::arg("d_min"), py::arg("d_max"), py::arg("seed")),
 		"Radii [length], shape (n,), of n disks with diameters uniform in [d_min, d_max); the same for a seed on every "

@@ -16,6 +16,17 @@ std::string nearest(const std::string& key, const py::list& names)
 
 }  // namespace
 
+py::object getter(std::function<py::object(const py::object&)> get)
+{
+	return py::make_function(std::move(get), py::default_call_policies(), boost::mpl::vector<py::object, const py::object&>());
+}
+
+py::object setter(std::function<void(const py::object&, const py::object&)> set)
+{
+	return py::make_function(
+		std::move(set), py::default_call_policies(), boost::mpl::vector<void, const py::object&, const py::object&>());
+}
+
 py::list assignable_names(const py::object& cls, const py::list& own)
 {
 	const py::object all = py::import("builtins").attr("dir")(cls);

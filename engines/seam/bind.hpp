@@ -17,6 +17,11 @@ py::list assignable_names(const py::object& cls, const py::list& own);
 /// True if the object's class has a property of that name, or may have attributes of its own: Python derived it from `bound`.
 bool may_have(const py::object& object, const PyTypeObject* bound, const std::string& key);
 
+/// A getter and a setter of a property as Python's functions. All properties share their types, so that Boost.Python's templates are
+/// compiled once, and not for each type of attribute of each class.
+py::object getter(std::function<py::object(const py::object&)> get);
+py::object setter(std::function<void(const py::object&, const py::object&)> set);
+
 template <class Self>
 [[noreturn]] void refuse_name(const std::string& key)
 {
@@ -82,18 +87,18 @@ py::object construct(const py::tuple& arguments, const py::dict& keywords)
 	return {};
 }
 
-/// A property whose new value is taken back if the object's check refuses it.
+/// A property's new value is taken back if the object's check refuses it.
 template <class Self, class Value>
-void set_checked(Self& object, const char* name, Value Self::*member, const Value& value)
+void set_checked(Self& object, const char* name, Value& attribute, const py::object& value)
 {
 	const Waiting<Self> waiting(object);
-	const Value before = object.*member;
-	object.*member = value;
+	const auto take_back = keeper(attribute);
+	from_python(attribute, Self::class_name, name, value);
 	try {
 		object.check();
 		object.assigned(name);
 	} catch (...) {
-		object.*member = before;
+		take_back();
 		throw;
 	}
 }
@@ -109,16 +114,16 @@ auto bind(const char* documentation)
 	cls.def("updateAttrs", &update<Self>, "Set attributes from a dictionary: all of them, or none if one is refused.");
 	cls.def("__setattr__", &assign<Self>);
 	Self::attributes([&](const char* name, auto member, const char* doc) {
-		using Value = std::decay_t<decltype(std::declval<Self&>().*member)>;
-		const auto get = [member](const Self& object) -> Value {
+		const auto get = [member](const py::object& self) {
+			const Self& object = py::extract<const Self&>(self);
 			const Waiting<Self> waiting(object);
-			return object.*member;
+			return to_python(object.*member);
 		};
-		const auto set = [name, member](Self& object, const Value& value) {
-			set_checked(object, name, static_cast<Value Self::*>(member), value);
+		const auto set = [name, member](const py::object& self, const py::object& value) {
+			Self& object = py::extract<Self&>(self);
+			set_checked(object, name, object.*member, value);
 		};
-		cls.add_property(name, py::make_function(get, py::default_call_policies(), boost::mpl::vector<Value, const Self&>()),
-			py::make_function(set, py::default_call_policies(), boost::mpl::vector<void, Self&, const Value&>()), doc);
+		cls.add_property(name, getter(get), setter(set), doc);
 	});
 	return cls;
 }

@@ -28,3 +28,5 @@ public:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::ContactPhys, "ContactPhys")

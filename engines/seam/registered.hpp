@@ -10,23 +10,19 @@
 ///       void action() override;
 ///       Real impulse = 0;
 ///   };
+///   BOOST_CLASS_EXPORT_KEY2(graindrive::Kicker, "Kicker")  // outside of the namespace; in the source BOOST_CLASS_EXPORT_IMPLEMENT
 ///
-/// From that come `dict()`, `O.save` and `O.load`, and with `seam::bind` (bind.hpp) what Python sees: the keyword constructor,
-/// properties, `updateAttrs`.
+/// The name for archives stands in the header, because every source that uses the class must agree on it. From the attributes come
+/// `dict()`, `O.save` and `O.load`, and with `seam::bind` (bind.hpp) what Python sees: the keyword constructor, properties,
+/// `updateAttrs`.
 #pragma once
-#include <boost/archive/binary_iarchive.hpp>
-#include <boost/archive/binary_oarchive.hpp>
-#include <boost/archive/xml_iarchive.hpp>
-#include <boost/archive/xml_oarchive.hpp>
 #include <boost/serialization/export.hpp>
-#include <boost/serialization/nvp.hpp>
-#include <boost/serialization/string.hpp>
-#include <boost/serialization/vector.hpp>
 #include <boost/serialization/void_cast.hpp>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
 
+#include "engines/seam/attributes.hpp"
 #include "engines/seam/yade.hpp"
 
 namespace graindrive {
@@ -79,8 +75,8 @@ public:
 	template <class Self, class Base>
 	Snapshot(Self& object, Base& base)
 	{
-		Self::attributes([&](const char*, auto member, const char*) { keep(object.*member); });
-		visit_base(base, [&](const char*, auto& value) { keep(value); });
+		Self::attributes([&](const char*, auto member, const char*) { put_back_.push_back(keeper(object.*member)); });
+		visit_base(base, [&](const char*, auto& value) { put_back_.push_back(keeper(value)); });
 	}
 	void restore() const
 	{
@@ -88,11 +84,6 @@ public:
 	}
 
 private:
-	template <class Value>
-	void keep(Value& value)
-	{
-		put_back_.push_back([&value, before = value] { value = before; });
-	}
 	std::vector<std::function<void()>> put_back_;
 };
 
@@ -164,7 +155,7 @@ public:
 	boost::python::dict pyDict() const override
 	{
 		boost::python::dict all = Base::pyDict();
-		Self::attributes([&](const char* name, auto member, const char*) { all[name] = boost::python::object(self().*member); });
+		Self::attributes([&](const char* name, auto member, const char*) { all[name] = seam::to_python(self().*member); });
 		return all;
 	}
 
@@ -190,15 +181,7 @@ public:
 		Self::attributes([&](const char* name, auto member, const char*) {
 			if (key != name) return;
 			found = true;
-			using Value = std::decay_t<decltype(self().*member)>;
-			boost::python::extract<Value> extracted(value);
-			if (!extracted.check()) {
-				const std::string got = boost::python::extract<std::string>(boost::python::str(value));
-				PyErr_SetString(
-					PyExc_TypeError, (std::string(Self::class_name) + "." + key + " cannot be made from " + got).c_str());
-				boost::python::throw_error_already_set();
-			}
-			self().*member = extracted();
+			seam::from_python(self().*member, Self::class_name, key, value);
 		});
 		if (found) self().assigned(key);
 		return found;
@@ -212,10 +195,9 @@ public:
 	void serialize(Archive& archive, unsigned)
 	{
 		boost::serialization::void_cast_register<Self, Base>();
-		seam::visit_base(static_cast<Base&>(*this),
-			[&](const char* name, auto& value) { archive& boost::serialization::make_nvp(name, value); });
-		Self::attributes(
-			[&](const char* name, auto member, const char*) { archive& boost::serialization::make_nvp(name, self().*member); });
+		seam::visit_base(
+			static_cast<Base&>(*this), [&](const char* name, auto& value) { seam::archive_value(archive, name, value); });
+		Self::attributes([&](const char* name, auto member, const char*) { seam::archive_value(archive, name, self().*member); });
 		if constexpr (Archive::is_loading::value) self().callPostLoad();
 	}
 
@@ -225,18 +207,3 @@ private:
 };
 
 }  // namespace graindrive
-
-namespace boost::serialization {
-
-template <class Archive>
-void serialize(Archive& archive, graindrive::Vector3r& v, unsigned)
-{
-	archive& make_nvp("x", v[0]) & make_nvp("y", v[1]) & make_nvp("z", v[2]);
-}
-template <class Archive>
-void serialize(Archive& archive, graindrive::Quaternionr& q, unsigned)
-{
-	archive& make_nvp("w", q.w()) & make_nvp("x", q.x()) & make_nvp("y", q.y()) & make_nvp("z", q.z());
-}
-
-}  // namespace boost::serialization

@@ -12,11 +12,12 @@
 
 namespace graindrive {
 
-namespace {
-
 namespace py = boost::python;
 namespace np = boost::python::numpy;
-using namespace graindrive::shapes;
+
+namespace shapes {
+
+namespace {
 
 np::ndarray array_of(const Points& points)
 {
@@ -117,8 +118,11 @@ void bind_clump()
 
 }  // namespace
 
+}  // namespace shapes
+
 void bind_shapes()
 {
+	using namespace shapes;
 	np::initialize();
 	bind_outline();
 	bind_clump();

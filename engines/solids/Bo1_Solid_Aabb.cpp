@@ -101,4 +101,4 @@ void Bo1_Solid_Aabb::go(const yade::shared_ptr<yade::Shape>& shape, yade::shared
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::Bo1_Solid_Aabb, "Bo1_Solid_Aabb")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Bo1_Solid_Aabb)

@@ -22,3 +22,5 @@ public:
 geometry::Bounds<3> box_around(const Solid& solid, const yade::Se3r& place, const yade::State& state);
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::Bo1_Solid_Aabb, "Bo1_Solid_Aabb")

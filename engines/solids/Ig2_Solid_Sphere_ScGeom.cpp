@@ -61,4 +61,4 @@ bool Ig2_Solid_Sphere_ScGeom::go(const yade::shared_ptr<yade::Shape>& first, con
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::Ig2_Solid_Sphere_ScGeom, "Ig2_Solid_Sphere_ScGeom")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Ig2_Solid_Sphere_ScGeom)

@@ -27,3 +27,5 @@ public:
 };
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::Ig2_Solid_Sphere_ScGeom, "Ig2_Solid_Sphere_ScGeom")

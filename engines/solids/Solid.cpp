@@ -42,4 +42,4 @@ void register_solid()
 
 }  // namespace graindrive
 
-BOOST_CLASS_EXPORT_GUID(graindrive::Solid, "Solid")
+BOOST_CLASS_EXPORT_IMPLEMENT(graindrive::Solid)

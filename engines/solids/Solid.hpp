@@ -45,3 +45,5 @@ inline bool is_solid(const yade::Shape* shape) { return shape && shape->getClass
 void register_solid();
 
 }  // namespace graindrive
+
+BOOST_CLASS_EXPORT_KEY2(graindrive::Solid, "Solid")
