@@ -45,7 +45,7 @@ from graindrive.commands import headless  # noqa: E402
 from graindrive.runs import progress, recording  # noqa: E402
 from graindrive.beds import shear_cell  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
-from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.shear.flow import UNITS, steady_flow  # noqa: E402
@@ -70,9 +70,17 @@ class ShearParameters(StudyParameters):
 
     unit_system: ClassVar[str] = quantities.GRAIN
 
-    inertial_number: float = quantity(0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10)
+    inertial_number: float = quantity(
+        0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10, only=When("shear_rate", (None,))
+    )
     shear_rate: Optional[float] = quantity(None, "sqrt(g/d)", "dv_x/dy; auto: from inertial_number and pressure", gt=0)
-    pressure: float = quantity(25.0, "rho g d", "P, the pressure that the height adapts to", gt=0)
+    pressure: float = quantity(
+        25.0,
+        "rho g d",
+        "P, the pressure that the height adapts to",
+        gt=0,
+        only=When("area_fraction", (0.0,)) | When("shear_rate", (None,)),
+    )
     area_fraction: float = quantity(
         0.0, "-", "keep this area fraction constant; 0: keep the pressure constant", ge=0, le=0.9
     )

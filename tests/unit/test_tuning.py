@@ -364,7 +364,7 @@ def test_keys_with_several_values_make_scenes_and_levers_the_reference():
     with pytest.raises(UsageError, match="a tuning takes seeds 1, 2, … itself"):
         command.scenes_of(STUDY, dict(seed="3"))
     with pytest.raises(UsageError, match="speed is no lever of made_up; there are: "):
-        command.varied(STUDY, "speed")
+        command.varied(STUDY, "speed", [ladder.parameters_of(STUDY, {})])
 
 
 # ---- books on trial --------------------------------------------------------------------------------------------------

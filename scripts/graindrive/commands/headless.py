@@ -89,6 +89,8 @@ def made(study, p):
     kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
     if p.choice:
         print(f"{study.name}: accuracy={p.accuracy}: {p.choice.words}", file=sys.stderr)
+    for key, condition in p.given_in_vain.items():
+        print(f"{study.name}: this run does not use {key}, which needs {condition.rule}", file=sys.stderr)
     with signals.handled(), RunFolder(p, study=study.name, **kept) as folder:
         if p.choice:
             folder.note(**p.choice.facts())
