@@ -129,6 +129,7 @@ STUDY = Study(
     cost=Cost(core_seconds, 1.0, "core-seconds"),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.extremes.figure", "draw"),
     report=Lazily("graindrive.postproc.extremes.campaign", "REPORT"),
 )

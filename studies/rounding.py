@@ -127,10 +127,6 @@ def check(p):
         raise UsageError(
             f"loop={p.loop} precision={p.precision}: the rounding study runs both loops in every precision; leave these keys out"
         )
-    if p.exports:
-        raise UsageError(
-            f"export={','.join(p.exports)} needs pictures of grains; the rounding study keeps none; leave it out"
-        )
     grains, ratio = p.taken()["grains"], time_step(p) / critical_step(p)
     if p.scene == "chaotic" and math.isqrt(grains) ** 2 != grains:
         raise UsageError(
@@ -317,6 +313,7 @@ STUDY = Study(
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.rounding.figure", "draw"),
     report=Lazily("graindrive.postproc.rounding.campaign", "REPORT"),
     constants={

@@ -146,10 +146,6 @@ def cell(p):
 
 def check(p):
     """Refuse values that allow no run; return the ratio of the time step to the critical one."""
-    if p.exports:
-        raise UsageError(
-            f"export={','.join(p.exports)} needs pictures of the grains, and the shear study keeps none; leave it out"
-        )
     if p.shear_rate is not None and not p.area_fraction:
         raise UsageError(
             f"shear_rate={p.shear_rate:g} needs a constant area_fraction; at constant pressure give inertial_number instead"
@@ -264,6 +260,7 @@ STUDY = Study(
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.shear.figure", "draw"),
     report=Lazily("graindrive.postproc.shear.campaign", "REPORT"),
     constants={

@@ -72,7 +72,8 @@ class Study:
     measures, `cost` is the cost of a run. `figure(path, frame=-1)` draws a finished run folder, `film(path)` makes a film of it.
     `report` (a `postproc.campaign.planned.Report`) holds the claims of papers, and the figures with which campaigns test them.
     `constants`, {name: Constant}, are written into every run folder. `family` is the name of the study of which this one is a
-    preset; without one it is the study's own name.
+    preset; without one it is the study's own name. `keeps_frames=False` says that runs keep no pictures of grains: they refuse
+    `export=`.
     """
 
     name: str
@@ -88,6 +89,7 @@ class Study:
     constants: dict = field(default_factory=dict)
     defaults: dict = field(default_factory=dict)
     family: str = ""
+    keeps_frames: bool = True
 
     def __post_init__(self):
         object.__setattr__(self, "family", self.family or self.name)

@@ -60,7 +60,17 @@ def parse(study, arguments, environment=None):
     p = build(cls, merged, given)
     p._choice = taken
     p._given_in_vain = given_in_vain(p, given, typed)
+    refuse_exports(study, p)
     return p
+
+
+def refuse_exports(study, p):
+    """Raise UsageError if the run is to export pictures of grains, of which the study keeps none."""
+    if p.exports and not study.keeps_frames:
+        asked = f"export={p.export}" if p.export else "vtk=1"
+        raise UsageError(
+            f"{asked} needs pictures of grains, and runs of {study.name} keep none; leave it out (run.h5 holds what was measured)"
+        )
 
 
 def given_in_vain(p, given, typed):
