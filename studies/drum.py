@@ -587,6 +587,7 @@ STUDY = Study(
         "thickness_over_diameter",
         "thickness_over_diameter froude surface_angle_deg packing_fraction layer_over_diameter surface_over_diameter"
         " surface_speed flow_down flow_up flow_balance rigid_deviation torque centre_angle",
+        torque="drum: mean torque of the grains on the drum, counter-clockwise",
     ),
     cost=Cost(work, lambda p: work(p) / core_seconds(p), unit="grain- or cell-steps"),
     check=check,

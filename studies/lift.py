@@ -535,6 +535,8 @@ STUDY = Study(
         quantities.SI,
         "lift_over_buoyancy",
         "lift_over_buoyancy drag_coefficient depth_over_d drag lift peak_stress_over_pressure tangential_share weight_on_base",
+        drag="mean force on the body along -x",
+        lift="mean force on the body, upwards",
     ),
     cost=Cost(particle_steps, RATE),
     check=check,

@@ -395,7 +395,13 @@ STUDY = Study(
     parameters=MagnusParameters,
     presets=PRESETS,
     observables=observables(
-        quantities.SI, "lift_to_drag", "lift_to_drag drag lift torque contacts phi slipping_share kappa front_share"
+        quantities.SI,
+        "lift_to_drag",
+        "lift_to_drag drag lift torque contacts phi slipping_share kappa front_share",
+        drag="mean force on the body along -V",
+        lift="mean force on the body along -omega x V",
+        torque="mean torque on the body, counter-clockwise",
+        phi="mean area fraction between the walls, without the body",
     ),
     cost=Cost(particle_steps, rate),
     check=check,

@@ -256,6 +256,7 @@ STUDY = Study(
         "stress_ratio",
         "stress_ratio shear_stress mean_pressure phi flow_inertial_number normal_stress_difference coordination"
         " kinetic_pressure_share kinetic_shear_share profile_deviation",
+        phi="mean area fraction of the cell",
     ),
     cost=Cost(particle_steps, rate),
     check=check,

@@ -135,11 +135,17 @@ class Study:
         return self.parameters(**{**self.defaults, **self.presets[scale], "scale": scale})
 
 
-def observables(system, headline, names):
-    """Return the `Observable`s of names, separated by spaces, with units and meanings from `postproc.quantities`."""
+def observables(system, headline, names, **meanings):
+    """Return the `Observable`s of names, separated by spaces, with units and meanings from `postproc.quantities`.
+
+    `meanings`, {name: text}, are what quantities mean in this study that other studies have, too.
+    """
     known = quantities.QUANTITIES["summary"]
     units = {name: quantities.unit_of("summary", name, system) or "" for name in names.split()}
-    return tuple(Observable(name, unit, known[name].meaning, name == headline) for name, unit in units.items())
+    if unknown := sorted(set(meanings) - set(units)):
+        raise ValueError(f"meanings of {', '.join(unknown)}, which are no names of observables")
+    told = {name: meanings.get(name, known[name].meaning) for name in units}
+    return tuple(Observable(name, unit, told[name], name == headline) for name, unit in units.items())
 
 
 def loaded(path):
