@@ -8,8 +8,10 @@ from pydantic import ValidationError
 
 from ..accuracy import choice
 from ..accuracy.told import measured_trade
+from ..base.columns import aligned
 from ..base.errors import UsageError, one_line
 from ..parameters import allowed, as_typed, choices, digest, plain_type
+from ..study import house
 from .batch_table import evaluated, read_row
 from .naming import LONGEST, readable
 from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
@@ -221,12 +223,6 @@ def costs(study):
         return ""
     words = [f"{scale} {study.cost.in_words(study.usual(scale))}" for scale in study.presets]
     return f"cost on one core, without the packing: {'; '.join(words)}"
-
-
-def aligned(rows):
-    """Return rows of cells as lines of text with aligned columns."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
-    return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths)), row[-1]]).rstrip() for row in rows)
 
 
 def taken_text(p, key):
