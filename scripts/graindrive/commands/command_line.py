@@ -163,12 +163,23 @@ def folder_name(study, scale, given, cls):
 
 def help_text(study):
     """Return the help text of a `Study`: its keys, then its levers, its observables and its cost."""
-    parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
+    parts = [f"usage: {called(study)} [key=value …]", help_table(study)]
     return "\n\n".join(
         part
         for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study), measured_trade(study)]
         if part
     )
+
+
+def called(study, environment=None):
+    """Return how the user calls a study: by the command that started it, else in the two ways that there are.
+
+    `scripts/run` and `graindrive run` leave their name and the study's in $GRAINDRIVE_CALLED.
+    """
+    own = (os.environ if environment is None else environment).get("GRAINDRIVE_CALLED", "")
+    file = next((word for word in sys.argv[:1] if Path(word).stem == study.name), f"{study.name}.py")
+    name = study.name if study.name in house() else file
+    return one_line(own, 200) or f"scripts/run {name} [key=value …]   or   yade -n -x {file}"
 
 
 def help_table(study):
