@@ -60,7 +60,7 @@ def tune(arguments):
     file = study_file(name)
     study = loaded(file)
     options, keys = parted(study, words)
-    target = choice.asked_of(study, options["target"])
+    target = choice.asked_of(study, options["target"], "target")
     scenes, given = scenes_of(study, keys)
     reference = ladder.reference_of(study, given)
     parameters = [ladder.parameters_of(study, {**scene, **reference}) for scene in scenes]
