@@ -131,7 +131,7 @@ def test_an_older_export_stays_until_the_new_one_is_whole(tmp_path, monkeypatch)
     monkeypatch.setattr(text_exports, "write_rows", full)
     monkeypatch.setattr(exports.vtk_export, "outline", full)
     for name in ("xyz", "vtk"):
-        with pytest.raises(OSError):
+        with pytest.raises(OSError, match="No space left on device"):
             exports.write(out, [name])
     assert all(path.read_bytes() == content for path, content in before.items())
 
