@@ -13,6 +13,8 @@ from graindrive.commands.command_line import help_table, parse
 from graindrive.parameters import StudyParameters, When, quantity
 from graindrive.study import Study, loaded
 from graindrive.tuning import __main__ as tune, ladder
+from graindrive.tuning.search import Search
+from graindrive.tuning.trials import Trials
 
 FOLDER = Path(__file__).resolve().parents[2] / "studies"
 
@@ -77,6 +79,10 @@ def parsed(name, *arguments, environment=()):
             "lid is used only with lid_pressure above 0, and this run has lid_pressure=0",
         ),
         ("wiggle_triangle", "lid=grains scale=paper", "and this run has lid_pressure=0"),
+        ("extremes", "strain=3", "strain is used only with case=shear_strains, and this run has case=friction_2d"),
+        ("extremes", "pair_steps=1000", "pair_steps is used only with case=bound_pair_2d or bound_pair_3d"),
+        ("rounding", "scene=regular average_time=50", "average_time is used only with scene=chaotic"),
+        ("rounding", "average_time=0 relax_time=5", "relax_time is used only with average_time above 0"),
         ("lift", "loop=yade threads=2", "threads is used only with loop=grain"),
         (
             "lift",
@@ -241,3 +247,28 @@ def test_a_tuning_refuses_keys_that_no_scene_uses():
         tune.refuse_unused({"speed": "2"}, scenes(False))
     with pytest.raises(UsageError, match="speed=2,3 has no effect: .* and a scene has fine=0"):
         tune.refuse_unused({"speed": "2,3"}, scenes(True, False))
+
+
+def test_a_tuning_makes_one_run_of_a_setting_whose_scenes_use_no_seed():
+    study = loaded(FOLDER / "drum.py")
+    dem, continuum = (ladder.parameters_of(study, {"model": model}) for model in ("dem", "continuum"))
+    assert tune.seeds_of([continuum], 6) == (1, 1)
+    assert tune.seeds_of([continuum, dem], 6) == tune.seeds_of([dem], 6) == (2, 6)
+    trials = Trials(study, None, None, [{"model": "continuum"}], {}, None)
+    assert [t.seed for t in Search(trials, {}, "torque", 0.1, 0.9, 1, 1).next_trials(1e9)] == [1]
+
+
+def test_the_papers_settings_are_told_without_levers_that_the_run_does_not_use():
+    words = parsed("drum", "model=continuum", "accuracy=0.01%").choice.words
+    assert "the paper's settings, cells=75 continuum_dt=0.02 largest_viscosity=80000 tolerance=1e-05" in words
+
+
+def test_a_campaign_refuses_a_film_that_cannot_be_before_any_run(tmp_path):
+    with pytest.raises(UsageError, match="sweep a: film=1 needs frames=2 or more, got frames=1"):
+        planned(tmp_path, "common: {film: 1}\nsweeps: {a: {model: dem}}\n")
+
+
+def test_the_cases_of_the_extremes_take_no_seed():
+    study = loaded(FOLDER / "extremes.py")
+    with pytest.raises(UsageError, match="seed=2: the cases have their own random numbers"):
+        study.check(parse(study, ["seed=2"], environment={}))

@@ -115,9 +115,8 @@ def chosen(study, text, made, given):
     paper = study.usual("paper") if "paper" in study.presets else study.usual(next(iter(study.presets)))
     levers = {key: getattr(paper, key) for key in study.levers if key not in given}
     why = "; ".join(dict.fromkeys(reasons)) or "nothing of this study was measured"
-    return Choice(
-        levers, f"no measured setting will do ({why}): the paper's settings, {in_words(sorted(levers.items()))}"
-    )
+    told = sorted((key, value) for key, value in levers.items() if key not in usual.not_used())
+    return Choice(levers, f"no measured setting will do ({why}): the paper's settings, {in_words(told)}")
 
 
 def is_open(study, made, book, setting, given):

@@ -16,6 +16,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..commands import headless
 from ..commands.command_line import parse
 from ..base.errors import UsageError, one_line
 from ..commands.naming import readable
@@ -206,6 +207,8 @@ def planned_run(place, values, study):
         arguments = [argument(study.parameters, key, value) for key, value in values.items()]
         p = parse(study, [*arguments, *ALLOW_UNUSED], environment={})
         study.check(p)
+        if p.film:
+            headless.films().require_possible(study, p)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
     arguments += ALLOW_UNUSED if p.given_in_vain else []

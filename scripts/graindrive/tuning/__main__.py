@@ -20,7 +20,7 @@ from ..study import duration, loaded
 from ..accuracy import book, choice
 from . import held_out, ladder
 from ..accuracy.effects import CONFIDENCE
-from .search import MOST_SEEDS, Search
+from .search import FEWEST_SEEDS, MOST_SEEDS, Search
 from .trials import Trials
 from ..accuracy.words import in_words, shown
 
@@ -70,7 +70,8 @@ def tune(arguments):
     out = Path(options["out"] or f"tune_{study.name}").absolute()
     trials = Trials(study, file, out, scenes, reference, Path.cwd())
     found = {key: values for key, (values, _) in ladders.items()}
-    search = Search(trials, found, target.observable, target.error, CONFIDENCE, whole(options, "seeds"))
+    seeds = seeds_of(parameters, whole(options, "seeds"))
+    search = Search(trials, found, target.observable, target.error, CONFIDENCE, max(seeds), min(seeds))
     tell_plan(search, ladders, options)
     if "-n" in flags:
         return 0
@@ -210,17 +211,24 @@ def whole(options, key):
     return int(options[key])
 
 
+def seeds_of(parameters, most):
+    """Return the (fewest, most) seeds of a setting: one where no scene uses the seed, for its runs would be the same."""
+    return (1, 1) if all("seed" in p.not_used() for p in parameters) else (FEWEST_SEEDS, most)
+
+
 def tell_plan(search, ladders, options):
     """Say what is varied from where, and what the reference costs."""
     trials = search.trials
     print(
         f"{NAME}: reference {in_words(sorted(trials.reference.items()))}; {len(trials.scenes)} scenes", file=sys.stderr
     )
+    if search.most_seeds == 1:
+        print(f"{NAME}: no scene uses the seed: each setting has one run in a scene", file=sys.stderr)
     for key, (values, end) in ladders.items():
         tried = ", ".join(shown(value) for value in values) or "nothing to try"
         print(f"{NAME}: {key}: {tried}{f' ({end})' if end else ''}", file=sys.stderr)
     if trials.study.cost:
-        start = search.repeats((), 2)
+        start = search.repeats((), search.fewest_seeds)
         seconds = sum(trials.expected_seconds(trial) for trial in start)
         print(
             f"{NAME}: {len(start)} runs of the reference: about {duration(seconds)} of the budget, {options['budget']}",
