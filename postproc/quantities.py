@@ -61,6 +61,12 @@ DISKS = {
 }
 
 # Where a name stands -> {name: Quantity}. NAME_err, a standard error, has the unit of NAME and no line of its own.
+# Names that several studies share; help takes a study's own part, see `study.observables`.
+DRAG = "Magnus: mean force on the body along -V; lift study: along -x"
+LIFT = "Magnus: mean force on the body along -omega x V; lift study: upwards"
+TORQUE = "Magnus: mean torque on the body, counter-clockwise; drum: of the grains on the drum"
+AREA_FRACTION = "mean area fraction; Magnus: between the walls, without the body; shear study: of the cell"
+
 QUANTITIES = {
     "summary": {
         **of("1/s", particle_steps_per_second="grains times steps over the seconds spent in the loop"),
@@ -102,13 +108,13 @@ QUANTITIES = {
         ),
         **of("velocity", v0="Magnus: the key V0"),
         **of("-", spin_ratio="Magnus: the key Omega = omega_0 R/V0", mu="the key"),
-        **of("force", drag="mean force on the body along -V", lift="mean force on the body along -omega x V"),
-        **of("torque", torque="mean torque on the body, counter-clockwise"),
+        **of("force", drag=DRAG, lift=LIFT),
+        **of("torque", torque=TORQUE),
         **of(
             "-",
             lift_to_drag="L/D, ratio of the means",
             contacts="mean number of contacts on the body",
-            phi="mean area fraction, Magnus: between the walls, without the body",
+            phi=AREA_FRACTION,
             slipping_share="part of the contacts on the body that slip",
             kappa="normal forces' part of the drag (Eq. 14)",
             front_share="part of the contacts within pi/2 of the velocity",
@@ -220,7 +226,7 @@ QUANTITIES = {
             turn="drum: how far it has turned since the start",
             centre_angle="drum: by how much the grains' centre of mass is turned from below the axis",
         ),
-        **of("-", phi="area fraction, Magnus: between the walls, without the body"),
+        **of("-", phi="area fraction; Magnus: between the walls, without the body; shear study: of the cell"),
         **of("force", normal_x="Magnus: normal forces on the body, along x"),
         **of(
             "force",

@@ -50,7 +50,7 @@ from graindrive.runs import recording  # noqa: E402
 from graindrive.scenes import scene  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import SpringDashpotMaterial  # noqa: E402
-from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drum import blocks  # noqa: E402
 from graindrive.postproc.drum.flow import SURFACE_LEVEL, SURFACE_REACH  # noqa: E402
@@ -81,6 +81,7 @@ MOST_STARTS = 2  # after so many times start_turn averages begin even if the flo
 MOST_BINS = 4e7  # of the fields: 1.6 GB of sums
 RATES = ((7700, 69200), (85e6, 70e6))  # grains, particle-steps per second of one core
 OVERLAP_KEYS = "lower dt_factor, or raise stiffness or largest_overlap"  # advice when the overlap guard stops a run
+GRAINS, CONTINUUM = When("model", ("dem", "both")), When("model", ("continuum", "both"))
 SERIES = quantities.units("series", "t turn centre_angle centre_x work torque", quantities.GRAIN)
 
 
@@ -88,6 +89,7 @@ class DrumParameters(StudyParameters):
     """The parameters of the drum study, in units of d, rho, g."""
 
     unit_system: ClassVar[str] = quantities.GRAIN
+    only: ClassVar[dict] = dict(seed=GRAINS, loop=GRAINS, precision=GRAINS, dt_factor=GRAINS)
 
     model: Literal["dem", "continuum", "both"] = quantity(
         "dem", "-", "what to simulate: grains, a continuum, or both and their difference"
@@ -100,25 +102,40 @@ class DrumParameters(StudyParameters):
         gt=0,
     )
     froude: Optional[float] = quantity(None, "-", "Fr = Omega^2 D/2g; auto: from angular_velocity", gt=0)
-    filling: float = quantity(0.5, "-", "share of the drum that the bed fills", gt=0)
+    filling: float = quantity(
+        0.5, "-", "share of the drum that the bed fills", gt=0, only=CONTINUUM | When("grains", (None,))
+    )
     grains: Optional[int] = quantity(
-        None, "-", "number of grains; auto: the paper's, or from filling", ge=1, le=10**7
+        None, "-", "number of grains; auto: the paper's, or from filling", ge=1, le=10**7, only=GRAINS
     )
     wall_disks: Optional[int] = quantity(
-        None, "-", "number of the wall's disks; auto: the paper's, or as many as fit side by side", ge=1, le=10**6
+        None,
+        "-",
+        "number of the wall's disks; auto: the paper's, or as many as fit side by side",
+        ge=1,
+        le=10**6,
+        only=GRAINS,
     )
-    friction: float = quantity(0.5, "-", "friction coefficient", ge=0)
-    restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1)
-    stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"))
-    start_turn: float = quantity(180.0, "degrees", "least rotation of the drum before averages begin", gt=0)
+    friction: float = quantity(0.5, "-", "friction coefficient", ge=0, only=GRAINS)
+    restitution: float = quantity(0.92, "-", "coefficient of restitution", gt=0, le=1, only=GRAINS)
+    stiffness: float = quantity(2e5, "m g/d", "k_n; k_t is 2/7 of it", gt=0, lever=Lever(2e5, "lower"), only=GRAINS)
+    start_turn: float = quantity(
+        180.0, "degrees", "least rotation of the drum before averages begin", gt=0, only=GRAINS
+    )
     turn: float = quantity(
-        360.0, "degrees", "rotation of the drum during the averages", gt=0, lever=Lever(360, "lower")
+        360.0, "degrees", "rotation of the drum during the averages", gt=0, lever=Lever(360, "lower"), only=GRAINS
     )
     field_spacing: Optional[float] = quantity(
-        None, "d", "side of the fields' square bins; auto: 0.6, or 1.2 for drums over 200 d", gt=0, le=5
+        None, "d", "side of the fields' square bins; auto: 0.6, or 1.2 for drums over 200 d", gt=0, le=5, only=GRAINS
     )
     field_samples: int = quantity(
-        1000, "-", "grains: number of moments in the fields' averages", ge=8, le=10**6, lever=Lever(1000, "lower", 4)
+        1000,
+        "-",
+        "number of moments in the fields' averages",
+        ge=8,
+        le=10**6,
+        lever=Lever(1000, "lower", 4),
+        only=GRAINS,
     )
     frames: int = quantity(
         1,
@@ -129,37 +146,45 @@ class DrumParameters(StudyParameters):
         watches=True,
     )
     largest_overlap: float = quantity(
-        0.1, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
+        0.1,
+        "R",
+        "largest allowed overlap of two grains; a larger one stops the run",
+        gt=0,
+        le=1,
+        watches=True,
+        only=GRAINS,
     )
-    cells: int = quantity(75, "-", "continuum: cells across the drum", ge=1, le=2000, lever=Lever(300, "lower"))
+    cells: int = quantity(75, "-", "cells across the drum", ge=1, le=2000, lever=Lever(300, "lower"), only=CONTINUUM)
     continuum_dt: float = quantity(
-        0.02, "sqrt(d/g)", "continuum: time step; the paper's is 1e-4", gt=0, lever=Lever(1e-3, "higher")
+        0.02, "sqrt(d/g)", "time step; the paper's is 1e-4", gt=0, lever=Lever(1e-3, "higher"), only=CONTINUUM
     )
     viscosity: Literal["full", "split"] = quantity(
-        "full", "-", "continuum: viscosity all implicit, or, as in the paper, only a constant part implicit"
+        "full", "-", "viscosity all implicit, or, as in the paper, only a constant part implicit", only=CONTINUUM
     )
     rheology: Literal["mu_i", "regularised"] = quantity(
-        "mu_i", "-", "continuum: mu(I), or the well-posed variant of Barker, Gray (2017)"
+        "mu_i", "-", "mu(I), or the well-posed variant of Barker, Gray (2017)", only=CONTINUUM
     )
-    static_friction: float = quantity(0.246, "-", "continuum: mu_s, friction of slow flow", gt=0)
-    dynamic_friction: float = quantity(0.401, "-", "continuum: mu_2, friction of fast flow", gt=0)
-    inertial_scale: float = quantity(0.133, "-", "continuum: I_0 of mu(I)", gt=0)
+    static_friction: float = quantity(0.246, "-", "mu_s, friction of slow flow", gt=0, only=CONTINUUM)
+    dynamic_friction: float = quantity(0.401, "-", "mu_2, friction of fast flow", gt=0, only=CONTINUUM)
+    inertial_scale: float = quantity(0.133, "-", "I_0 of mu(I)", gt=0, only=CONTINUUM)
     largest_viscosity: float = quantity(
         8e4,
         "m sqrt(g/d)",
-        "continuum: eta_max, viscosity of material at rest; the paper's is 8000",
+        "eta_max, viscosity of material at rest; the paper's is 8000",
         gt=0,
         lever=Lever(8e5, "lower"),
+        only=CONTINUUM,
     )
     tolerance: float = quantity(
         1e-5,
         "-",
-        "continuum: residual at which the pressure solver stops",
+        "residual at which the pressure solver stops",
         gt=0,
         lt=1,
         lever=Lever(1e-8, "higher", factor=10),
+        only=CONTINUUM,
     )
-    pressure_solver: str = quantity("", "-", "continuum: name of the pressure solver; empty: the fastest")
+    pressure_solver: str = quantity("", "-", "name of the pressure solver; empty: the fastest", only=CONTINUUM)
 
     @property
     def omega(self):
@@ -562,6 +587,7 @@ STUDY = Study(
         "thickness_over_diameter",
         "thickness_over_diameter froude surface_angle_deg packing_fraction layer_over_diameter surface_over_diameter"
         " surface_speed flow_down flow_up flow_balance rigid_deviation torque centre_angle",
+        torque="drum: mean torque of the grains on the drum, counter-clockwise",
     ),
     cost=Cost(work, lambda p: work(p) / core_seconds(p), unit="grain- or cell-steps"),
     check=check,

@@ -38,7 +38,7 @@ from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.extremes.outcome import Setting  # noqa: E402
 from graindrive.extremes.table import CASES  # noqa: E402
 from graindrive.lazily import Lazily  # noqa: E402
-from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.study import Cost, Observable, Study  # noqa: E402
 
 LONG = "bound_pair"  # the case that uses `pair_steps`
@@ -52,9 +52,22 @@ class ExtremesParameters(StudyParameters):
 
     case: Literal[tuple(CASES)] = quantity("friction_2d", "-", "which extreme")
     pair_steps: int = quantity(
-        1_000_000, "-", "steps of the bound pair", ge=100, lever=Lever(100_000_000, "lower", 10.0)
+        1_000_000,
+        "-",
+        "steps of the bound pair",
+        ge=100,
+        lever=Lever(100_000_000, "lower", 10.0),
+        only=When("case", ("bound_pair_2d", "bound_pair_3d")),
     )
-    strain: float = quantity(100.0, "-", "total strain of the sheared cell", gt=0.1, le=1e4, lever=Lever(100, "lower"))
+    strain: float = quantity(
+        100.0,
+        "-",
+        "total strain of the sheared cell",
+        gt=0.1,
+        le=1e4,
+        lever=Lever(100, "lower"),
+        only=When("case", ("shear_strains",)),
+    )
 
 
 PRESETS = {
@@ -65,7 +78,7 @@ PRESETS = {
 
 
 def check(p):
-    """Refuse a loop or a precision that does not apply to the case, and any dt_factor."""
+    """Refuse a loop or a precision that does not apply to the case, and any dt_factor or seed."""
     case = CASES[p.case]
     for key, words in (("loop", case.loops), ("precision", case.precisions)):
         if getattr(p, key) not in words:
@@ -74,6 +87,8 @@ def check(p):
             )
     if p.loop == "yade" and p.precision == "single":
         raise UsageError("precision=single exists only in GrainLoop, not with loop=yade; leave one of them out")
+    if p.seed != 1:
+        raise UsageError(f"seed={p.seed}: the cases have their own random numbers, the same each time; leave seed out")
     if p.dt_factor != 1:
         raise UsageError(
             f"dt_factor={p.dt_factor:g}: every case has its own time step, and its bound holds for that step; leave dt_factor out"
@@ -129,6 +144,7 @@ STUDY = Study(
     cost=Cost(core_seconds, 1.0, "core-seconds"),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.extremes.figure", "draw"),
     report=Lazily("graindrive.postproc.extremes.campaign", "REPORT"),
 )

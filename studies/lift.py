@@ -51,7 +51,7 @@ from graindrive.scenes import scene, space  # noqa: E402
 from graindrive.beds import sphere_bed  # noqa: E402
 from graindrive.base.errors import UsageError, one_line  # noqa: E402
 from graindrive.scenes.material import HertzRestitutionSpheres  # noqa: E402
-from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.lift import forces  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -94,13 +94,15 @@ class LiftParameters(StudyParameters):
     shape: str = quantity(
         "cylinder", "-", "cylinder, or a file: outline swept along y (.csv, .wkt), distance function (.py)"
     )
-    cylinder_diameter: float = quantity(3.3, "d", "D of the cylinder", ge=1, le=1000)
+    cylinder_diameter: float = quantity(
+        3.3, "d", "D of the cylinder", ge=1, le=1000, only=When("shape", ("cylinder",)) | When("travel", (None,))
+    )
     depth: float = quantity(52.8, "d", "depth of the axis below the surface of the bed, without the lid", gt=0)
     lid_density: float = quantity(
         100.0, "rho_g", "density of the lid's grains over that of the others; 0: no lid", ge=0
     )
     bulk_gravity: bool = quantity(True, "-", "gravity acts on all grains; 0: only on the lid")
-    lid_turns: bool = quantity(False, "-", "grains of the lid may turn")
+    lid_turns: bool = quantity(False, "-", "grains of the lid may turn", only=When("lid_density"))
     speed: float = quantity(0.1, "m/s", "U_0", gt=0, le=20, lever=Lever(0.1, "higher"))
     frame: Literal["bed", "cylinder"] = quantity("bed", "-", "what rests: base and bed, or the cylinder")
     mu: float = quantity(0.5, "-", "friction coefficient", ge=0)
@@ -119,10 +121,23 @@ class LiftParameters(StudyParameters):
     )
     fields: bool = quantity(True, "-", "average velocity, fraction and stress around the body", watches=True)
     field_spacing: float = quantity(
-        1.0, "d", "distance between the fields' grid points; it must divide 1 d", gt=0, le=1, watches=True
+        1.0,
+        "d",
+        "distance between the fields' grid points; it must divide 1 d",
+        gt=0,
+        le=1,
+        watches=True,
+        only=When("fields", (True,)),
     )
     field_samples: int = quantity(
-        200, "-", "number of moments in the fields' averages", ge=1, le=10**6, watches=True, lever=Lever(200, "lower")
+        200,
+        "-",
+        "number of moments in the fields' averages",
+        ge=1,
+        le=10**6,
+        watches=True,
+        lever=Lever(200, "lower"),
+        only=When("fields", (True,)),
     )
     frames: int = quantity(
         1, "-", "number of pictures of the bed, at equal intervals, the last at the end", ge=1, le=9999, watches=True
@@ -131,7 +146,15 @@ class LiftParameters(StudyParameters):
     largest_overlap: float = quantity(
         0.3, "R", "largest allowed overlap of two grains; a larger one stops the run", gt=0, le=1, watches=True
     )
-    threads: int = quantity(0, "-", "threads of GrainLoop; 0: the number that is fastest", ge=0, le=256, identity=False)
+    threads: int = quantity(
+        0,
+        "-",
+        "threads of GrainLoop; 0: the number that is fastest",
+        ge=0,
+        le=256,
+        identity=False,
+        only=When("loop", ("grain",)),
+    )
 
     @property
     def way(self):
@@ -512,6 +535,8 @@ STUDY = Study(
         quantities.SI,
         "lift_over_buoyancy",
         "lift_over_buoyancy drag_coefficient depth_over_d drag lift peak_stress_over_pressure tangential_share weight_on_base",
+        drag="mean force on the body along -x",
+        lift="mean force on the body, upwards",
     ),
     cost=Cost(particle_steps, RATE),
     check=check,

@@ -42,7 +42,7 @@ from graindrive.scenes import scene  # noqa: E402
 from graindrive.runs.block_means import block_means  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import Lever, quantity  # noqa: E402
+from graindrive.parameters import Lever, When, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.magnus.forces import UNITS, steady_state  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -100,7 +100,9 @@ class MagnusParameters(intruder.BodyParameters):
     )
     intruder_diameter: float = quantity(5.0, "d", "diameter of the disk, or longer side of another shape", ge=1)
     shape: str = quantity("disk", "-", "disk, or another shape made of beads: square, tall, wide, triangle, or a file")
-    bead_diameter: float = quantity(0.5, "d", "bead diameter of a shape other than the disk", gt=0)
+    bead_diameter: float = quantity(
+        0.5, "d", "bead diameter of a shape other than the disk", gt=0, only=When("shape", never=("disk",))
+    )
     polydispersity: float = quantity(
         0.1, "-", "half-width of the uniform distribution of diameters, over d", ge=0, lt=0.9
     )
@@ -109,7 +111,13 @@ class MagnusParameters(intruder.BodyParameters):
     )
     fields: bool = quantity(True, "-", "average the fields around the body in bins of field_spacing", watches=True)
     field_spacing: float = quantity(
-        0.05, "d", "side of the fields' square bins; it must divide 1 d", gt=0, le=1, watches=True
+        0.05,
+        "d",
+        "side of the fields' square bins; it must divide 1 d",
+        gt=0,
+        le=1,
+        watches=True,
+        only=When("fields", (True,)),
     )
     field_samples: int = quantity(
         1000,
@@ -119,6 +127,7 @@ class MagnusParameters(intruder.BodyParameters):
         le=10**6,
         watches=True,
         lever=Lever(1000, "lower", 4),
+        only=When("fields", (True,)),
     )
     frames: int = quantity(
         1,
@@ -386,7 +395,13 @@ STUDY = Study(
     parameters=MagnusParameters,
     presets=PRESETS,
     observables=observables(
-        quantities.SI, "lift_to_drag", "lift_to_drag drag lift torque contacts phi slipping_share kappa front_share"
+        quantities.SI,
+        "lift_to_drag",
+        "lift_to_drag drag lift torque contacts phi slipping_share kappa front_share",
+        drag="mean force on the body along -V",
+        lift="mean force on the body along -omega x V",
+        torque="mean torque on the body, counter-clockwise",
+        phi="mean area fraction between the walls, without the body",
     ),
     cost=Cost(particle_steps, rate),
     check=check,

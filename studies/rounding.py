@@ -43,7 +43,7 @@ from graindrive.rounding import number_types  # noqa: E402
 from graindrive.runs import recording  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.rounding.number_types import TRUTH, TYPES  # noqa: E402
-from graindrive.parameters import StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import StudyParameters, When, quantity  # noqa: E402
 from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.postproc.rounding import averages, distances  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -56,6 +56,7 @@ EVERY = 0.125  # between two rows [t_0]
 SPEED = 1.0  # largest velocity along each axis at the start [d/t_0]
 SPACING = 4 / 3  # of the disks at the start [d]
 GRAVITY = 16.0  # in the regular scene [d/t_0^2]
+CHAOTIC = When("scene", ("chaotic",))
 AVERAGED = ("longdouble", "double", "single")  # number types whose runs continue for average_time
 COMPARED = [name for name in TYPES if name != TRUTH]
 GRAINS = dict(chaotic=36, regular=12)
@@ -76,10 +77,13 @@ class RoundingParameters(StudyParameters):
         300.0,
         "t_0",
         "further time of the runs with 64, 53 and 24 bits, for averages (chaotic scene); 0: no averages",
+        only=CHAOTIC,
         ge=0,
         le=1e6,
     )
-    relax_time: float = quantity(20.0, "t_0", "time at the start that averages leave out", ge=0)
+    relax_time: float = quantity(
+        20.0, "t_0", "time at the start that averages leave out", ge=0, only=CHAOTIC & When("average_time")
+    )
 
     def auto_values(self):
         """Return {key: value} for grains=auto."""
@@ -126,10 +130,6 @@ def check(p):
     if p.loop != "grain" or p.precision != "double":
         raise UsageError(
             f"loop={p.loop} precision={p.precision}: the rounding study runs both loops in every precision; leave these keys out"
-        )
-    if p.exports:
-        raise UsageError(
-            f"export={','.join(p.exports)} needs pictures of grains; the rounding study keeps none; leave it out"
         )
     grains, ratio = p.taken()["grains"], time_step(p) / critical_step(p)
     if p.scene == "chaotic" and math.isqrt(grains) ** 2 != grains:
@@ -317,6 +317,7 @@ STUDY = Study(
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.rounding.figure", "draw"),
     report=Lazily("graindrive.postproc.rounding.campaign", "REPORT"),
     constants={

@@ -45,7 +45,7 @@ from graindrive.commands import headless  # noqa: E402
 from graindrive.runs import progress, recording  # noqa: E402
 from graindrive.beds import shear_cell  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
-from graindrive.parameters import Lever, StudyParameters, quantity  # noqa: E402
+from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.lazily import Lazily  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.shear.flow import UNITS, steady_flow  # noqa: E402
@@ -70,9 +70,17 @@ class ShearParameters(StudyParameters):
 
     unit_system: ClassVar[str] = quantities.GRAIN
 
-    inertial_number: float = quantity(0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10)
+    inertial_number: float = quantity(
+        0.1, "-", "I = shear_rate d sqrt(rho/pressure)", gt=0, le=10, only=When("shear_rate", (None,))
+    )
     shear_rate: Optional[float] = quantity(None, "sqrt(g/d)", "dv_x/dy; auto: from inertial_number and pressure", gt=0)
-    pressure: float = quantity(25.0, "rho g d", "P, the pressure that the height adapts to", gt=0)
+    pressure: float = quantity(
+        25.0,
+        "rho g d",
+        "P, the pressure that the height adapts to",
+        gt=0,
+        only=When("area_fraction", (0.0,)) | When("shear_rate", (None,)),
+    )
     area_fraction: float = quantity(
         0.0, "-", "keep this area fraction constant; 0: keep the pressure constant", ge=0, le=0.9
     )
@@ -138,10 +146,6 @@ def cell(p):
 
 def check(p):
     """Refuse values that allow no run; return the ratio of the time step to the critical one."""
-    if p.exports:
-        raise UsageError(
-            f"export={','.join(p.exports)} needs pictures of the grains, and the shear study keeps none; leave it out"
-        )
     if p.shear_rate is not None and not p.area_fraction:
         raise UsageError(
             f"shear_rate={p.shear_rate:g} needs a constant area_fraction; at constant pressure give inertial_number instead"
@@ -252,10 +256,12 @@ STUDY = Study(
         "stress_ratio",
         "stress_ratio shear_stress mean_pressure phi flow_inertial_number normal_stress_difference coordination"
         " kinetic_pressure_share kinetic_shear_share profile_deviation",
+        phi="mean area fraction of the cell",
     ),
     cost=Cost(particle_steps, rate),
     check=check,
     run=run,
+    keeps_frames=False,
     figure=Lazily("graindrive.postproc.shear.figure", "draw"),
     report=Lazily("graindrive.postproc.shear.campaign", "REPORT"),
     constants={

@@ -45,7 +45,7 @@ from graindrive.runs import recording  # noqa: E402
 from graindrive.scenes import scene  # noqa: E402
 from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import HertzHistoryMaterial  # noqa: E402
-from graindrive.parameters import Lever, quantity  # noqa: E402
+from graindrive.parameters import Lever, When, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
 from graindrive.postproc.drift import SKIPPED, drift, phase_rates  # noqa: E402
 from graindrive.study import Constant, Cost, Study, observables  # noqa: E402
@@ -121,6 +121,7 @@ class WiggleParameters(intruder.BodyParameters):
         le=10**4,
         watches=True,
         lever=Lever(100, "lower"),
+        only=When("fields", (True,)),
     )
     lid_pressure: Optional[float] = quantity(
         None,
@@ -128,7 +129,9 @@ class WiggleParameters(intruder.BodyParameters):
         f"weight over width of a lid; auto: {lid.BED_FRACTION:g} for each d that depth is less than the paper's {PAPERS_DEPTH}",
         ge=0,
     )
-    lid: Literal["rigid", "grains"] = quantity("rigid", "-", "a row of glued disks on top, or heavy uppermost grains")
+    lid: Literal["rigid", "grains"] = quantity(
+        "rigid", "-", "a row of glued disks on top, or heavy uppermost grains", only=When("lid_pressure")
+    )
 
     @property
     def lid_load(self):

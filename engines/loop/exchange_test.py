@@ -276,9 +276,9 @@ def test_a_take_over_that_is_refused_leaves_labels_as_they_are():
     scene()
     O.bodies[0].bounded = False
     real = builtins.newton
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="bounded"):
         grain_loop.use_grain_loop()
-    assert builtins.newton == real
+    assert builtins.newton is real
 
 
 # ---- runners ---------------------------------------------------------------------------------------------------------

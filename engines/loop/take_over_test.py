@@ -207,8 +207,14 @@ def test_a_body_that_just_fits_between_its_images_is_taken():
     disks.disk(0, 1, 0.51)
     disks.disk(1, 20, 0.51)
     disks.loop()
-    grain_loop.use_grain_loop()
+    loop = grain_loop.use_grain_loop()
     disks.run(2)
+    assert sorted(map(int, loop.ids)) == [0, 1, 2]
+    # The first two overlap by 0.01 on one side, and are 0.09 apart across the period's: they part along x.
+    vx = disks.everything()[:, 3]
+    mass = [b.state.mass for b in O.bodies]
+    assert vx[0] > 0 > vx[1] and vx[2] == 0
+    assert mass[0] * vx[0] == pytest.approx(-mass[1] * vx[1], rel=1e-9)
 
 
 @pytest.mark.parametrize("what", ["clump", "watched"])

@@ -187,7 +187,7 @@ def test_bad_values_are_refused_with_the_rule(wrong, words):
 
 def test_a_bad_value_leaves_the_old_one():
     fields = averager()
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match="spacing must be positive and finite, got -1"):
         fields.spacing = -1
     assert fields.spacing == 0.25
 

@@ -109,7 +109,7 @@ def test_a_truncated_archive_is_an_error_and_no_crash(tmp_path):
     O.save(str(tmp_path / "bed.xml"), quiet=True)
     whole = (tmp_path / "bed.xml").read_text()
     (tmp_path / "half.xml").write_text(whole[: len(whole) // 2])
-    with pytest.raises(Exception):
+    with pytest.raises(RuntimeError, match="input stream error"):
         O.load(str(tmp_path / "half.xml"), quiet=True)
     shaken_bed()
     run(10)

@@ -123,12 +123,12 @@ def test_values_that_are_refused_are_taken_back(cls, wrong, rule, update):
 def test_all_or_none_is_taken():
     drive = engines.OscillationDrive(amplitude=1, period=2, label="a")
     before = drive.dict()
-    for wrong in (
-        {"label": "b", "dead": True, "amplitude": 5, "period": "fast"},
-        {"label": "b", "amplitude": 5, "period": 0},
-        {"amplitude": 5, "phase": 1, "periode": 3},
+    for wrong, kind, words in (
+        ({"label": "b", "dead": True, "amplitude": 5, "period": "fast"}, TypeError, "period cannot be made from fast"),
+        ({"label": "b", "amplitude": 5, "period": 0}, ValueError, "period must be positive, got 0"),
+        ({"amplitude": 5, "phase": 1, "periode": 3}, AttributeError, "no attribute 'periode'; did you mean 'period'"),
     ):
-        with pytest.raises((TypeError, ValueError, AttributeError)):
+        with pytest.raises(kind, match=words):
             drive.updateAttrs(wrong)
         assert drive.dict() == before
 

@@ -115,7 +115,7 @@ def test_the_proof_leaves_the_scene_as_it_was():
     O.reset()
     O.engines, O.dt = [ForceResetter(label="mine")], 0.125
     engines.prove_layout()
-    with pytest.raises(ImportError):
+    with pytest.raises(ImportError, match="Scene.engines does not lead to the first engine of O.engines"):
         engines.prove_layout({"Scene.engines": 8})
     assert [e.label for e in O.engines] == ["mine"]
     assert O.dt == 0.125 and O.iter == 0 and len(O.bodies) == 0

@@ -103,7 +103,7 @@ def test_operators_are_those_of_sets():
     assert np.array_equal(inside(~a), ~inside(a))
     assert (~~a).recipe == a.recipe
     assert (a | b | a | b).recipe.startswith("union 4 ball")  # one union, not unions of unions
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="unsupported operand .*'Surface' and 'int'"):
         a | 3
 
 

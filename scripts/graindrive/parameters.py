@@ -43,17 +43,116 @@ class Lever:
             raise ValueError(f"factor must be above 1, got {self.factor:g}")
 
 
-def quantity(default, unit, meaning, *, identity=True, lever=None, watches=False, **limits):
+class Condition:
+    """A condition on the values of a run: it says in which runs a parameter has an effect. `a & b`, `a | b` combine two."""
+
+    def __or__(self, other):
+        return AnyOf((self, other))
+
+    def __and__(self, other):
+        return AllOf((self, other))
+
+    def broken(self, p):
+        """Return the part of the condition that the parameters `p` do not meet, None if they meet all."""
+        return None if self.holds(p) else self
+
+
+@dataclass(frozen=True)
+class When(Condition):
+    """Met where the parameter `key` has one of `values`, or none of `never`; without both, where it is above 0.
+
+    None among the values stands for `auto`. A value that is compared with 0 may be `auto`: then the derived one counts.
+    """
+
+    key: str
+    values: tuple = ()
+    never: tuple = ()
+
+    def holds(self, p):
+        """True if the parameters `p` meet the condition."""
+        value = getattr(p, self.key)
+        if self.values or self.never:
+            return value in self.values if self.values else value not in self.never
+        return p.taken()[self.key] > 0
+
+    @property
+    def rule(self):
+        """The condition in words: "model=dem or both"."""
+        words = " or ".join(briefly(value) for value in self.values or self.never)
+        if self.values:
+            return f"{self.key}={words}"
+        return f"another {self.key} than {words}" if self.never else f"{self.key} above 0"
+
+    def state(self, p):
+        """Return what the parameters `p` have: "model=continuum"."""
+        return f"{self.key}={briefly(p.taken()[self.key])}"
+
+
+@dataclass(frozen=True)
+class AnyOf(Condition):
+    """Met where one of several conditions is."""
+
+    parts: tuple
+
+    def holds(self, p):
+        """True if the parameters `p` meet one of the conditions."""
+        return any(part.holds(p) for part in self.parts)
+
+    @property
+    def rule(self):
+        """The conditions in words: "model=continuum or both, or with grains=auto"."""
+        return ", or with ".join(part.rule for part in self.parts)
+
+    def state(self, p):
+        """Return what the parameters `p` have for each of the conditions."""
+        return " and ".join(part.state(p) for part in self.parts)
+
+
+@dataclass(frozen=True)
+class AllOf(Condition):
+    """Met where all of several conditions are."""
+
+    parts: tuple
+
+    def broken(self, p):
+        """Return the first part that the parameters `p` do not meet, None if they meet all."""
+        return next((broken for part in self.parts if (broken := part.broken(p))), None)
+
+    def holds(self, p):
+        """True if the parameters `p` meet all conditions."""
+        return self.broken(p) is None
+
+    @property
+    def rule(self):
+        """The conditions in words: "model=dem or both, and with loop=grain"."""
+        return ", and with ".join(part.rule for part in self.parts)
+
+
+def briefly(value):
+    """Return a value as the user would type it, a number without superfluous digits."""
+    return f"{value:g}" if isinstance(value, float) else as_typed(value)
+
+
+def as_typed(value):
+    """Return a value as the user would type it."""
+    if value is None:
+        return "auto"
+    return str(int(value)) if isinstance(value, bool) else str(value)
+
+
+def quantity(default, unit, meaning, *, identity=True, lever=None, watches=False, only=None, **limits):
     """Declare one parameter of a study.
 
     `unit` is text ("d", "sqrt(d/g)", "-" for a pure number), `meaning` one line for the help table, `limits` any of
     gt, ge, lt, le. `identity=False` marks a key that changes how a run is made but not its result: such keys
     are ignored when runs are compared. `lever` is the parameter's `Lever`, if it is one. `watches=True` marks a key that only
-    decides what a run records or when it is stopped (frames, fields, guards) and does not change the motion.
+    decides what a run records or when it is stopped (frames, fields, guards) and does not change the motion. `only` is the
+    `Condition` under which the parameter has an effect: in other runs a value given by the user is refused.
     """
     if set(limits) - set(LIMITS):
         raise TypeError(f"limits are {', '.join(LIMITS)}, got {', '.join(limits)}")
-    return Field(default, description=meaning, unit=unit, identity=identity, lever=lever, watches=watches, **limits)
+    about = dict(unit=unit, identity=identity, lever=lever, watches=watches, only=only)
+    return Field(default, description=meaning, **about, **limits)
 
 
 class StudyParameters(BaseModel):
@@ -65,8 +164,12 @@ class StudyParameters(BaseModel):
     """
 
     _choice = PrivateAttr(None)  # what `accuracy` took, a `tuning.choice.Choice`
+    _given_in_vain = PrivateAttr({})  # {key: `Condition` not met} of keys that the user gave
 
     unit_system: ClassVar[str] = ""  # of postproc.quantities, SI or GRAIN; empty where a study has units of its own
+    only: ClassVar[
+        dict
+    ] = {}  # {key of the class above: `Condition`}, further conditions of parameters that a study inherits
 
     scale: Literal["smoke", "demo", "paper"] = quantity(
         "demo", "-", "size of the run: under 30 s; 1-3 minutes; the paper's own", identity=False
@@ -74,7 +177,11 @@ class StudyParameters(BaseModel):
     seed: int = quantity(1, "-", "seed of everything random", ge=0, le=2**31 - 1)
     loop: Literal["grain", "yade"] = quantity("grain", "-", "time loop: GrainLoop, or YADE's own loop as the reference")
     precision: Literal["double", "single"] = quantity(
-        "double", "-", "number type of contact forces in GrainLoop", lever=Lever("double", ("single",))
+        "double",
+        "-",
+        "number type of contact forces in GrainLoop",
+        lever=Lever("double", ("single",)),
+        only=When("loop", ("grain",)),
     )
     dt_factor: float = quantity(
         1.0, "-", "time step, as a multiple of the study's own choice", gt=0, lever=Lever(1.0, "higher")
@@ -96,6 +203,9 @@ class StudyParameters(BaseModel):
         "", "-", f"also write files for other programs: a comma list of {', '.join(EXPORTS)}", identity=False
     )
     film: bool = quantity(False, "-", "also film the run's frames, as animation.mp4; frames=200 or so", identity=False)
+    unused: Literal["refuse", "allow"] = quantity(
+        "refuse", "-", "keys given that this run does not use: refuse them, or name them and go on", identity=False
+    )
 
     class Config:
         extra = "forbid"
@@ -142,6 +252,23 @@ class StudyParameters(BaseModel):
     def watching(cls):
         """Return the keys that only decide what a run records or when it is stopped."""
         return {key for key, field in cls.__fields__.items() if field.field_info.extra.get("watches")}
+
+    @property
+    def given_in_vain(self):
+        """{key: the `Condition` that is not met} of keys that the user gave, but that this run does not use."""
+        return self._given_in_vain
+
+    @classmethod
+    def condition(cls, key):
+        """Return the `Condition` under which a parameter has an effect; None for one that every run uses."""
+        parts = [part for part in (cls.only.get(key), cls.__fields__[key].field_info.extra.get("only")) if part]
+        return AllOf(tuple(parts)) if len(parts) > 1 else next(iter(parts), None)
+
+    def not_used(self):
+        """Return {key: the `Condition` that is not met} of the parameters that this run does not use."""
+        found = {key: self.condition(key) for key in self.__fields__}
+        broken = {key: condition.broken(self) for key, condition in found.items() if condition}
+        return {key: condition for key, condition in broken.items() if condition}
 
     def auto_values(self):
         """Return {key: value to use} for the keys that are `auto`; a study that has such keys overrides this."""

@@ -72,7 +72,8 @@ class Study:
     measures, `cost` is the cost of a run. `figure(path, frame=-1)` draws a finished run folder, `film(path)` makes a film of it.
     `report` (a `postproc.campaign.planned.Report`) holds the claims of papers, and the figures with which campaigns test them.
     `constants`, {name: Constant}, are written into every run folder. `family` is the name of the study of which this one is a
-    preset; without one it is the study's own name.
+    preset; without one it is the study's own name. `keeps_frames=False` says that runs keep no pictures of grains: they refuse
+    `export=`.
     """
 
     name: str
@@ -88,6 +89,7 @@ class Study:
     constants: dict = field(default_factory=dict)
     defaults: dict = field(default_factory=dict)
     family: str = ""
+    keeps_frames: bool = True
 
     def __post_init__(self):
         object.__setattr__(self, "family", self.family or self.name)
@@ -133,11 +135,17 @@ class Study:
         return self.parameters(**{**self.defaults, **self.presets[scale], "scale": scale})
 
 
-def observables(system, headline, names):
-    """Return the `Observable`s of names, separated by spaces, with units and meanings from `postproc.quantities`."""
+def observables(system, headline, names, **meanings):
+    """Return the `Observable`s of names, separated by spaces, with units and meanings from `postproc.quantities`.
+
+    `meanings`, {name: text}, are what quantities mean in this study that other studies have, too.
+    """
     known = quantities.QUANTITIES["summary"]
     units = {name: quantities.unit_of("summary", name, system) or "" for name in names.split()}
-    return tuple(Observable(name, unit, known[name].meaning, name == headline) for name, unit in units.items())
+    if unknown := sorted(set(meanings) - set(units)):
+        raise ValueError(f"meanings of {', '.join(unknown)}, which are no names of observables")
+    told = {name: meanings.get(name, known[name].meaning) for name in units}
+    return tuple(Observable(name, unit, told[name], name == headline) for name, unit in units.items())
 
 
 def loaded(path):

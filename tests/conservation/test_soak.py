@@ -61,5 +61,6 @@ def test_drift_is_the_slope_of_the_residual():
 def test_the_command_writes_its_summary(tmp_path, capsys):
     assert soak.main(["--out", str(tmp_path), "--hours", str(0.5 / 3600), "--report", "0.1"]) == 0
     assert json.loads((tmp_path / "summary.json").read_text())["steps"] == 500
-    with pytest.raises(SystemExit):
+    with pytest.raises(SystemExit) as ending:
         soak.main(["--hours", "-1"])
+    assert ending.value.code == 2 and "hours" in capsys.readouterr().err

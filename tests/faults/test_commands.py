@@ -288,4 +288,13 @@ def test_a_stopped_run_stops_the_study(checkout):
     while "ready" not in run.stdout.readline():
         pass
     run.send_signal(signal.SIGTERM)
-    assert run.wait(20) != 0
+    assert run.wait(20) == -signal.SIGTERM  # the study itself, in the place of scripts/run
+
+
+def test_a_study_hears_by_which_command_it_was_called(checkout):
+    """Its help names that command: the path that was typed, or `graindrive run` of an installed tree."""
+    (checkout / "studies" / "wiggle.py").write_text("import os\nprint(os.environ['GRAINDRIVE_CALLED'])\n")
+    typed, path = call(checkout, "run", "wiggle"), checkout / "scripts" / "run"
+    assert typed.stdout.splitlines()[-1] == f"{path} wiggle", typed.stderr
+    installed = call(checkout, "run", "wiggle", environment={**NO_PACKAGES, "GRAINDRIVE_COMMAND": "graindrive run"})
+    assert installed.stdout.splitlines()[-1] == "graindrive run wiggle"

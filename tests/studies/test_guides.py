@@ -53,7 +53,7 @@ def test_solids_in_scripts_of_yade(tmp_path):
 @needs_snakemake
 def test_a_study_of_ones_own_and_its_campaign(tmp_path):
     said = follow("study.md", tmp_path)
-    assert "usage: yade oscillator.py" in said and "oscillator/report.md" in said
+    assert "oscillator.py [key=value …]" in said and "oscillator/report.md" in said
     assert json.loads((tmp_path / "first/summary.json").read_text())["energy_left_unit"] == "-"
     assert list(pd.read_csv(tmp_path / "oscillator/table.csv")["damping"]) == [0.05, 0.1, 0.2]
     assert (tmp_path / "oscillator/figures/oscillator-damping-energy_left.png").exists()

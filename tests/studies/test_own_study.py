@@ -110,8 +110,9 @@ def test_a_run_without_yade_and_grains_leaves_a_run_folder(place):
 
 
 def test_help_says_keys_levers_observables_and_cost(place):
-    said = call(place, "oscillator.py", "help").stdout
-    assert said.startswith("usage: yade oscillator.py [key=value …]\n\nkey ")
+    file = "oscillator.py"
+    said = call(place, file, "help").stdout
+    assert said.startswith(f"usage: scripts/run {file} [key=value …]   or   yade -n -x {file} [key=value …]\n\nkey ")
     lines = [" ".join(line.split()) for line in said.splitlines()]
     assert "dt_factor 1 higher" in lines and "time 20 s lower" in lines
     assert "* energy_left - energy at the end over that at the start" in lines
@@ -207,7 +208,8 @@ def test_a_study_file_is_a_command_under_each_program(tmp_path, command, study):
         [*command, str(TOP / "studies" / study), "help"], cwd=tmp_path, env={**os.environ, **also}, **pipes
     )
     assert done.returncode == 0, done.stderr
-    assert f"usage: yade {study} [key=value …]" in done.stdout and "observables of summary.json" in done.stdout
+    usage = f"{RUN} {TOP / 'studies' / study}" if command == [RUN] else f"yade -n -x {TOP / 'studies' / study}"
+    assert f"{usage} [key=value …]\n" in done.stdout and "observables of summary.json" in done.stdout
 
 
 @needs_yade

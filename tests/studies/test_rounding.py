@@ -161,7 +161,6 @@ def test_a_missing_program_is_named(rounding, monkeypatch):
         (dict(grains=4), "grains=4 must be at least 9 in the chaotic scene"),
         (dict(dt_factor=40), "dt_factor=40 gives a time step of 0.62 times the critical one"),
         (dict(average_time=21, relax_time=20), "average_time=21 must be longer than relax_time=20"),
-        (dict(export="xyz"), "export=xyz needs pictures of grains"),
     ],
 )
 def test_values_that_do_not_go_together_are_refused(rounding, keys, words):

@@ -137,7 +137,6 @@ def test_disks_that_never_touch_have_no_friction(shear):
             dict(area_fraction=0.3, shear_rate=1.0),
             "a strain of 7.34 from its first area fraction, 0.625, to area_fraction=0.3,.*; raise settle_strain and strain, or",
         ),
-        (dict(export="xyz"), "export=xyz needs pictures of the grains, and the shear study keeps none"),
         (dict(shear_rate=1.0), "at constant pressure give inertial_number"),
         (dict(dt_factor=60), "time step .* is over the critical"),
         (dict(pressure=1e5), "makes grains overlap too far"),

@@ -4,16 +4,17 @@ import extended_xyz
 import h5py
 import numpy as np
 import pytest
-from made_up_frames import PERIOD, made_up_run
+from made_up_frames import PERIOD, Parameters, disks, made_up_run
 
 from graindrive.exports import exports, text_exports
 from graindrive.base.errors import UsageError
 from graindrive.parameters import StudyParameters
 from graindrive.postproc import __main__ as command
-from graindrive.commands.command_line import parameters_or_exit
+from graindrive.commands import headless
+from graindrive.commands.command_line import parameters_or_exit, parse
 from graindrive.postproc.reader import Run
 from graindrive.runs.run_folder import RunFolder
-from graindrive.study import Study
+from graindrive.study import Study, house, loaded
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +81,44 @@ def test_a_run_without_frames_writes_no_empty_files_and_says_so(tmp_path, capsys
         folder.declare_series(t="s")
         folder.append(t=1.0)
     assert {p.name for p in (tmp_path / "run").iterdir()} == {"run.h5", "summary.json"}
-    assert "holds no frames: there is nothing for export=xyz" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert (
+        f"graindrive: {tmp_path}/run holds no frames: there is nothing for export=xyz; leave it out, or have the"
+        in said
+    )
+    assert ".part" not in said, "the folder's hidden name"
     assert command.main([str(tmp_path / "run"), "export=vtk"]) == 2
     assert "holds no frames and no fields: there is nothing for export=vtk" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["shear", "rounding", "extremes"])
+@pytest.mark.parametrize("asked", ["export=xyz", "vtk=1"])
+def test_a_study_without_frames_refuses_exports_before_the_run(name, asked):
+    with pytest.raises(
+        UsageError, match=f"^{asked} needs pictures of grains, and runs of {name} keep none; leave it out"
+    ):
+        parse(loaded(house()[name]), [asked], environment={})
+    assert parse(loaded(house()["wiggle"]), [asked], environment={}).exports == (
+        asked.replace("=1", "").split("=")[-1],
+    )
+
+
+def test_an_export_asked_for_later_is_written_for_the_finished_run(tmp_path, capsys):
+    def run(p, folder):
+        grains = disks(np.random.default_rng(1), [0, 1], [1.0, 3.0], [1.0, 1.0], role=np.zeros(2, dtype=int))
+        folder.frame(0.5, grains, period=PERIOD)
+
+    study = Study("toy", Parameters, {"demo": {}}, run=run)
+
+    def call(*arguments):
+        p = parse(study, [f"out={tmp_path}/run", *arguments], environment={})
+        return headless.guarded(lambda: headless.carry_out(study, p), study.name)
+
+    assert call() == 0 and not (tmp_path / "run" / "frames.xyz").exists()
+    assert call("export=xyz") == 0
+    assert "toy: wrote frames.xyz\ntoy: " in capsys.readouterr().err
+    assert len(extended_xyz.read((tmp_path / "run" / "frames.xyz").read_text())) == 1
+    assert call("export=xyz") == 0 and "wrote" not in capsys.readouterr().err
 
 
 def test_an_older_export_stays_until_the_new_one_is_whole(tmp_path, monkeypatch):
@@ -95,7 +131,7 @@ def test_an_older_export_stays_until_the_new_one_is_whole(tmp_path, monkeypatch)
     monkeypatch.setattr(text_exports, "write_rows", full)
     monkeypatch.setattr(exports.vtk_export, "outline", full)
     for name in ("xyz", "vtk"):
-        with pytest.raises(OSError):
+        with pytest.raises(OSError, match="No space left on device"):
             exports.write(out, [name])
     assert all(path.read_bytes() == content for path, content in before.items())
 

@@ -50,7 +50,7 @@ def test_a_missing_row_and_a_changed_bit_are_counted(subject):
 
 def test_a_missing_frame_another_time_and_another_summary_are_counted(subject):
     change(subject, lambda file: file["frames/0001"].attrs.update(t=0.75))
-    assert judged(subject)["differing bits"] > 0
+    assert judged(subject) == {"differing bits": 1}  # of the exponents of 0.5 and 0.75 none, of the mantissas one
     change(subject, lambda file: file.pop("frames/0001"))
     assert judged(subject)["differing bits"] == 3 * 64 + 64  # three numbers and the time
     (subject.place / "trial/run/summary.json").write_text(json.dumps(dict(drag=1.25)))

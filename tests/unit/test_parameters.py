@@ -130,8 +130,10 @@ def test_identity_ignores_what_does_not_change_the_result():
 
 
 def test_parameters_are_frozen():
-    with pytest.raises(TypeError):
-        parsed().period = 3
+    p = parsed()
+    with pytest.raises(TypeError, match="immutable"):
+        p.period = 3
+    assert p.period == 4
 
 
 def test_help_shows_every_key_with_unit_default_meaning_and_range():

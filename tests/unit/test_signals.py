@@ -38,9 +38,9 @@ def test_a_protected_block_ends_before_the_signal_takes_effect():
 
 
 def test_an_error_in_a_protected_block_is_not_hidden():
-    with pytest.raises(OSError), signals.handled():
+    with pytest.raises(OSError, match="^of the block$"), signals.handled():
         with signals.deferred():
-            raise OSError
+            raise OSError("of the block")
     with signals.handled():
         signals.check()
 
@@ -54,10 +54,13 @@ def test_a_study_does_not_swallow_it_by_accident():
 
 
 def test_ignored_signals_stay_ignored():
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    before, went_on = signal.signal(signal.SIGHUP, signal.SIG_IGN), False
     try:
         with signals.handled():
             os.kill(os.getpid(), signal.SIGHUP)
+            signals.check()
+            went_on = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+        assert went_on and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
     finally:
         signal.signal(signal.SIGHUP, before)
 

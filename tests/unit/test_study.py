@@ -1,11 +1,13 @@
 """The Study object: what it refuses, its presets, and how it is loaded from a file."""
 
+import re
 import sys
 from pathlib import Path
 
 import pytest
 
 from graindrive.commands.command_line import help_text, parse
+from graindrive.base.columns import aligned
 from graindrive.base.errors import UsageError
 from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.postproc import quantities
@@ -124,3 +126,52 @@ def test_a_file_is_loaded_from_any_folder_under_another_name_than_main(monkeypat
     )
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
     assert loaded("mine.py").usual("demo").depth == 5
+
+
+def test_the_usage_line_names_what_the_user_called(monkeypatch):
+    study = loaded(house()["wiggle"])
+    monkeypatch.setattr("sys.argv", ["/anywhere/studies/wiggle.py"])
+    monkeypatch.delenv("GRAINDRIVE_CALLED", raising=False)
+    both = "usage: scripts/run wiggle [key=value …]   or   yade -n -x /anywhere/studies/wiggle.py [key=value …]\n"
+    assert help_text(study).startswith(both)
+    monkeypatch.setenv("GRAINDRIVE_CALLED", "graindrive run wiggle")
+    assert help_text(study).startswith("usage: graindrive run wiggle [key=value …]\n")
+
+
+@pytest.mark.parametrize("name", ["magnus", "wiggle", "lift", "drum", "shear"])
+def test_help_says_what_an_observable_means_in_this_study_alone(name):
+    """Several studies have phi, drag, lift or torque; shear's phi was said to be that of Magnus."""
+    own = {"lift": "lift study", "shear": "shear study"}.get(name, name)
+    for observable in loaded(house()[name]).observables:
+        others = {"Magnus", "wiggle", "lift study", "drum", "shear study", "omega x V"} - {own, name, name.capitalize()}
+        others -= {"omega x V"} if name == "magnus" else set()
+        assert not [other for other in others if other in observable.meaning], observable
+
+
+def test_a_meaning_of_no_observable_is_refused():
+    with pytest.raises(ValueError, match="meanings of drag, which are no names of observables"):
+        observables("SI", "lift", "lift", drag="along x")
+
+
+def test_columns_are_aligned_and_lines_end_without_blanks():
+    assert aligned([("a", "b", "c"), ("long", "", "x"), ("", "wide", "")]) == "a     b     c\nlong        x\n      wide"
+
+
+@pytest.mark.parametrize(
+    "study, key, words",
+    [
+        ("wiggle", "grains", "there is no key 'grains'; drum, rounding and shear have it; allowed: "),
+        ("wiggle", "diameter", "there is no key 'diameter'; did you mean bead_diameter? allowed: "),
+        ("magnus", "spin", "there is no key 'spin'; did you mean spin_ratio? allowed: "),
+        ("magnus", "diameter", "did you mean intruder_diameter or bead_diameter? allowed: "),
+        ("shear", "height", "there is no key 'height'; lift, magnus and wiggle have it; allowed: "),
+        ("shear", "fraction", "did you mean area_fraction? allowed: "),
+        ("wiggle", "--lid-load", "there is no key '--lid-load'; did you mean lid? allowed: "),
+        ("wiggle", "perod", "there is no key 'perod'; did you mean period? allowed: "),
+        ("wiggle", "qqq", "there is no key 'qqq'; allowed: "),
+        ("wiggle", "[(", "there is no key '[('; allowed: "),
+    ],
+)
+def test_an_unknown_key_gets_the_keys_that_hold_it_and_the_studies_that_have_it(study, key, words):
+    with pytest.raises(UsageError, match=re.escape(words)):
+        parse(loaded(house()[study]), [f"{key}=1"], environment={})

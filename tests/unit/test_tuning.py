@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from graindrive.parameters import Lever, StudyParameters, quantity
 from graindrive.study import Cost, Observable, Study
 from graindrive.tuning import __main__ as command
 from graindrive.postproc.tuning import held_out as held_out_report
-from graindrive.accuracy import book
+from graindrive.accuracy import book, choice
 from graindrive.tuning import held_out, ladder
 from graindrive.accuracy.effects import NOTHING, Effect, of_reference, pooled
 from graindrive.tuning.search import BAD, FAILED, GOOD, SAVES_NOTHING, UNDECIDED, Search
@@ -316,6 +317,37 @@ def test_an_accuracy_that_means_nothing_is_refused(books, text, words):
         parse(STUDY, [f"accuracy={text}"], {})
 
 
+@pytest.mark.parametrize("text", ["fast", "0", "100%", "lift:5%", "force:2"])
+def test_a_refused_accuracy_says_what_to_type_and_that_works(books, text):
+    with pytest.raises(
+        UsageError, match="for example scripts/run made_up accuracy=.*, or leave accuracy out"
+    ) as refused:
+        parse(STUDY, [f"accuracy={text}"], {})
+    (example,) = re.findall(r"scripts/run made_up (accuracy=\S+),", str(refused.value))
+    assert parse(STUDY, [example], {}).choice.setting is not None
+    with pytest.raises(
+        UsageError, match="accuracy=torque:0 must .*; no error of torque was measured: leave accuracy out"
+    ):
+        parse(STUDY, ["accuracy=torque:0"], {})
+    with pytest.raises(UsageError, match=f"^target={text}.*; for example target=5%$"):
+        choice.asked_of(STUDY, text, "target")
+
+
+def test_an_accuracy_that_no_setting_reaches_says_which_one_would_be(books):
+    p = parse(STUDY, ["accuracy=0.01%"], {})
+    assert p.choice.setting is None
+    (example,) = re.findall(r"smallest measured error of force is \S+ %, which (accuracy=\S+) takes", p.choice.words)
+    assert parse(STUDY, [example], {}).choice.setting is not None
+
+
+@pytest.mark.parametrize(
+    "error, text", [(0.05, "5.1%"), (0.0499, "5%"), (0.123, "13%"), (0.0012, "0.13%"), (0.98, "99%")]
+)
+def test_an_error_is_asked_for_rounded_up(error, text):
+    assert choice.as_asked(STUDY, "force", error) == f"accuracy={text}"
+    assert choice.as_asked(STUDY, "torque", error) == f"accuracy=torque:{text}"
+
+
 def test_a_study_without_observables_has_no_accuracy():
     with pytest.raises(UsageError, match="names no observable"):
         parse(dataclasses.replace(STUDY, observables=()), ["accuracy=5%"], {})
@@ -366,7 +398,7 @@ def test_keys_with_several_values_make_scenes_and_levers_the_reference():
     with pytest.raises(UsageError, match="a tuning takes seeds 1, 2, … itself"):
         command.scenes_of(STUDY, dict(seed="3"))
     with pytest.raises(UsageError, match="speed is no lever of made_up; there are: "):
-        command.varied(STUDY, "speed")
+        command.varied(STUDY, "speed", [ladder.parameters_of(STUDY, {})])
 
 
 # ---- books on trial --------------------------------------------------------------------------------------------------

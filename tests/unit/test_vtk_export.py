@@ -181,4 +181,5 @@ def test_lives_beside_yade(tmp_path, order):
     code = f"{order}; import test_vtk_export as t; t.export([t.bed()], {str(tmp_path)!r})"
     path = os.pathsep.join([os.path.dirname(__file__), *filter(None, sys.path)])
     subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, check=True, timeout=60)
-    assert (tmp_path / "grains.pvd").exists()
+    assert ElementTree.parse(tmp_path / "grains.pvd").find("Collection/DataSet").get("file") == "grains_0001.vtp"
+    assert (tmp_path / "grains_0001.vtp").stat().st_size > 0

@@ -10,6 +10,9 @@ from . import book as books
 from .effects import CONFIDENCE, NOTHING
 from .words import in_words
 
+ROUNDED = 1e-6  # so that an error's text, rounded up, is never below it
+LARGEST = 0.99  # an error that may be asked for must be below 100 % when it is rounded up
+
 
 @dataclass(frozen=True)
 class Asked:
@@ -40,26 +43,46 @@ class Choice:
         return self.setting.effects[observable].bound(CONFIDENCE) if self.setting else math.nan
 
 
-def asked_of(study, text):
-    """Return what the key accuracy asks for: "5%", "0.05" or "drag:5%"; UsageError with the rule."""
+def asked_of(study, text, key="accuracy"):
+    """Return what a key, accuracy or a tuning's target, asks for: "5%", "0.05" or "drag:5%"; UsageError with rule and example."""
     match = re.fullmatch(r"(?:(\w+):)?([0-9.eE+-]+)(%?)", text.strip())
     names = [o.name for o in study.observables]
+    if study.headline is None:
+        raise UsageError(
+            f"{key}={text}: study {study.name} names no observable, so nothing can have an error; leave it out"
+        )
+    name = match[1] if match and match[1] in names else study.headline.name
     try:
         error = float(match[2]) * (0.01 if match[3] else 1.0)
     except (TypeError, ValueError):
         raise UsageError(
-            f"accuracy={text} must be a share as 5% or 0.05, or that of an observable as drag:5%"
+            f"{key}={text} must be a share as 5% or 0.05, or that of an observable as drag:5%; {example(study, name, key)}"
         ) from None
     if not 0 < error < 1:
-        raise UsageError(f"accuracy={text} must lie between 0 and 100 %")
-    if study.headline is None:
+        raise UsageError(f"{key}={text} must lie between 0 and 100 %; {example(study, name, key)}")
+    if match[1] and match[1] not in names:
         raise UsageError(
-            f"accuracy={text}: study {study.name} names no observable, so nothing can have an error; leave it out"
+            f"{key}={text}: {study.name} measures no {match[1]}; it measures {', '.join(names)}; {example(study, name, key)}"
         )
-    name = match[1] or study.headline.name
-    if name not in names:
-        raise UsageError(f"accuracy={text}: {study.name} measures no {name}; it measures {', '.join(names)}")
     return Asked(name, error)
+
+
+def example(study, name, key):
+    """Return in words what a user may type: for accuracy the smallest error of the observable `name` that a book has."""
+    if key != "accuracy":
+        return f"for example {key}=5%"
+    known = [s.effects[name].bound(CONFIDENCE) for b in books.of_study(study) for s in b.settings if name in s.effects]
+    if not (least := min(known, default=1)) < LARGEST:
+        return f"no error of {name} was measured: leave accuracy out"
+    return f"for example scripts/run {study.name} {as_asked(study, name, least)}, the smallest measured, or leave accuracy out"
+
+
+def as_asked(study, name, error):
+    """Return the argument that asks for a relative error [-] of an observable, rounded up to two digits: "accuracy=drag:5.1%"."""
+    percent = 100 * error * (1 + ROUNDED)
+    step = 10.0 ** (math.floor(math.log10(percent)) - 1)
+    of = "" if name == study.headline.name else f"{name}:"
+    return f"accuracy={of}{math.ceil(percent / step) * step:.2g}%"
 
 
 def chosen(study, text, made, given):
@@ -81,7 +104,9 @@ def chosen(study, text, made, given):
         found += [(seconds(study, made, book, s), book, s) for s in good]
         if not good:
             reasons.append(
-                best_of(kept, asked) if kept else f"no setting was measured with {in_words(sorted(given.items()))}"
+                best_of(study, kept, asked)
+                if kept
+                else f"no setting was measured with {in_words(sorted(given.items()))}"
             )
     if found:
         cost, book, setting = min(found, key=lambda f: f[0])
@@ -90,9 +115,8 @@ def chosen(study, text, made, given):
     paper = study.usual("paper") if "paper" in study.presets else study.usual(next(iter(study.presets)))
     levers = {key: getattr(paper, key) for key in study.levers if key not in given}
     why = "; ".join(dict.fromkeys(reasons)) or "nothing of this study was measured"
-    return Choice(
-        levers, f"no measured setting will do ({why}): the paper's settings, {in_words(sorted(levers.items()))}"
-    )
+    told = sorted((key, value) for key, value in levers.items() if key not in usual.not_used())
+    return Choice(levers, f"no measured setting will do ({why}): the paper's settings, {in_words(told)}")
 
 
 def is_open(study, made, book, setting, given):
@@ -125,13 +149,14 @@ def seconds(study, made, book, setting):
     return setting.cost_factor * study.cost.core_seconds(made(book.levers_of(setting)))
 
 
-def best_of(settings, asked):
-    """Return in words how far the best of the settings is known, and how many seeds would do."""
+def best_of(study, settings, asked):
+    """Return in words how far the best of the settings is known, what to ask for to get it, and how many seeds would do."""
     measured = [s for s in settings if math.isfinite(s.effects.get(asked.observable, NOTHING).bound(CONFIDENCE))]
     if not measured:
         return f"{asked.observable} has no measured error"
     least = min(s.effects[asked.observable].bound(CONFIDENCE) for s in measured)
     words = f"the smallest measured error of {asked.observable} is {100 * least:.2g} %"
+    words += f", which {as_asked(study, asked.observable, least)} takes" if least < LARGEST else ""
     runs = {id(s): s.effects[asked.observable].runs_for(asked.error, CONFIDENCE) for s in measured}
     enough = [s for s in measured if math.isfinite(runs[id(s)])]
     if not enough:

@@ -1,5 +1,6 @@
 """What the books of measured settings say of a study, as a paragraph of its help."""
 
+from ..base.columns import aligned
 from . import book as books
 from .effects import CONFIDENCE
 from .words import in_words
@@ -26,5 +27,4 @@ def told(made, observable):
         share = setting.core_seconds / start.core_seconds
         bound = f"{100 * effect.bound(CONFIDENCE):.2g}"
         rows.append((f"  {in_words(sorted(setting.levers.items()))}", f"{share:.2f}", change, bound))
-    widths = [max(len(row[i]) for row in rows) for i in range(4)]
-    return "\n".join([heading, *("  ".join(cell.ljust(w) for cell, w in zip(row, widths)).rstrip() for row in rows)])
+    return f"{heading}\n{aligned(rows)}"

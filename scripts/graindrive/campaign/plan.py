@@ -16,6 +16,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..commands import headless
 from ..commands.command_line import parse
 from ..base.errors import UsageError, one_line
 from ..commands.naming import readable
@@ -30,7 +31,9 @@ OWN_KEYS = {  # keys of a study that only the campaign sets, with the reason
     "out": "the campaign names its run folders",
     "resume": "a campaign always resumes",
     "redo": "remove a run folder to have it made again",
+    "unused": "a campaign refuses keys that none of its runs uses",
 }
+ALLOW_UNUSED = ["unused=allow"]  # a key may stand beside several models of which one uses it
 MOST_RUNS = 100_000
 
 
@@ -121,17 +124,46 @@ def report_of(path, study, name, sweeps):
 
 def planned_runs(path, content, study):
     """Return the `PlannedRun`s of all sweeps, each run once however many sweeps need it."""
-    runs, common = {}, content.get("common") or {}
+    runs, common, used = {}, content.get("common") or {}, set()
     for sweep, place, grid in grids_of(path, content["sweeps"], common):
+        here = set()
         for values in crossed(grid):
             run = planned_run(place, values, study)
+            refuse_repeats(place, grid, run.parameters)
+            here |= set(values) - set(run.parameters.given_in_vain)
             known = runs.setdefault(run.name, run)
             if known.parameters.identity() != run.parameters.identity():
                 raise UsageError(
                     f"{place}: two different runs got the same name {run.name}; give one of them another seed"
                 )
             known.sweeps += [] if sweep in known.sweeps else [sweep]
+        refuse_unused(place, [key for key in grid if key not in common and key not in here], run.parameters)
+        used |= here
+    refuse_unused(f"{path}: common", [key for key in common if key not in used], run.parameters)
     return list(runs.values())
+
+
+def refuse_unused(place, keys, p):
+    """Raise UsageError for the first of `keys` that no run uses; `p` are the parameters of one of the runs."""
+    for key in keys:
+        broken = p.given_in_vain[key]
+        raise UsageError(
+            f"{place}: {key} has no effect in any run: it is used only with {broken.rule}, and the runs have"
+            f" {broken.state(p)}; leave it out"
+        )
+
+
+def refuse_repeats(place, grid, p):
+    """Raise UsageError if a key has several values in a grid, but a run of it with the parameters `p` does not use the key.
+
+    There would be several such runs with one result. A single value may stand beside several models, of which one uses it.
+    """
+    for key, broken in p.given_in_vain.items():
+        if len(grid.get(key, ())) > 1:
+            raise UsageError(
+                f"{place}: {key} has {len(grid[key])} values, but its runs with {broken.state(p)} do not use it and would be the"
+                f" same; give them a grid of their own ({key} needs {broken.rule})"
+            )
 
 
 def grids_of(path, sweeps, common):
@@ -173,10 +205,13 @@ def planned_run(place, values, study):
             raise UsageError(f"{place}: {key} is not for campaigns: {reason}; leave it out")
     try:
         arguments = [argument(study.parameters, key, value) for key, value in values.items()]
-        p = parse(study, arguments, environment={})
+        p = parse(study, [*arguments, *ALLOW_UNUSED], environment={})
         study.check(p)
+        if p.film:
+            headless.films().require_possible(study, p)
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
+    arguments += ALLOW_UNUSED if p.given_in_vain else []
     return PlannedRun(run_name(p, study), arguments, p)
 
 

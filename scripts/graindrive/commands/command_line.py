@@ -8,8 +8,10 @@ from pydantic import ValidationError
 
 from ..accuracy import choice
 from ..accuracy.told import measured_trade
+from ..base.columns import aligned
 from ..base.errors import UsageError, one_line
-from ..parameters import allowed, choices, digest, plain_type
+from ..parameters import allowed, as_typed, choices, digest, plain_type
+from ..study import house
 from .batch_table import evaluated, read_row
 from .naming import LONGEST, readable
 from .parameter_values import argument_text, arguments_of, convert, nearest, refuse, require_key
@@ -22,7 +24,8 @@ def parameters_or_exit(study, arguments, environment=None):
 
     Sources of values, the strongest first: the command line and the row of YADE's batch table, a file of parameters (an
     argument @FILE), the levers that `accuracy` chooses, the values of the scale, the defaults of a preset study. `help` prints
-    all keys and exits with code 0; a bad argument prints one line on stderr and exits with code 2.
+    all keys and exits with code 0; a bad argument prints one line on stderr and exits with code 2. A key that is given on the
+    command line or in the table, but that the run does not use, is a bad argument unless unused=allow; one of a file is not.
     """
     if any(argument in HELP_WORDS for argument in arguments):
         print(help_text(study))
@@ -40,6 +43,7 @@ def parse(study, arguments, environment=None):
     files = [argument[1:] for argument in arguments if argument.startswith("@")]
     given = from_batch_row(cls, os.environ if environment is None else environment)
     given = added(cls, given, [argument for argument in arguments if not argument.startswith("@")])
+    typed = tuple(given)
     given = {**added(cls, {}, [a for file in files for a in arguments_of(Path(file), cls)]), **given}
     values = {key: convert(cls.__fields__[key], text) for key, text in given.items()}
     base = dict(study.defaults)
@@ -57,7 +61,34 @@ def parse(study, arguments, environment=None):
         )
     p = build(cls, merged, given)
     p._choice = taken
+    p._given_in_vain = given_in_vain(p, given, typed)
+    refuse_exports(study, p)
     return p
+
+
+def refuse_exports(study, p):
+    """Raise UsageError if the run is to export pictures of grains, of which the study keeps none."""
+    if p.exports and not study.keeps_frames:
+        asked = f"export={p.export}" if p.export else "vtk=1"
+        raise UsageError(
+            f"{asked} needs pictures of grains, and runs of {study.name} keep none; leave it out (run.h5 holds what was measured)"
+        )
+
+
+def given_in_vain(p, given, typed):
+    """Return {key: its `Condition` that is not met} of the keys given that a run does not use.
+
+    UsageError names the first of those `typed` by the user, unless unused=allow. A file of parameters may serve several runs
+    that use different keys of it; its keys are only told.
+    """
+    found = {key: condition for key, condition in p.not_used().items() if key in given}
+    for key, condition in found.items():
+        if key in typed and p.unused == "refuse":
+            raise UsageError(
+                f"{argument_text(key, given[key])} has no effect: {key} is used only with {condition.rule}, and this run has"
+                f" {condition.state(p)}; leave {key} out, or give unused=allow"
+            )
+    return found
 
 
 def added(cls, given, arguments):
@@ -132,12 +163,23 @@ def folder_name(study, scale, given, cls):
 
 def help_text(study):
     """Return the help text of a `Study`: its keys, then its levers, its observables and its cost."""
-    parts = [f"usage: yade {study.name}.py [key=value …]", help_table(study)]
+    parts = [f"usage: {called(study)} [key=value …]", help_table(study)]
     return "\n\n".join(
         part
         for part in [*parts, levers_in_words(study), observables_in_words(study), costs(study), measured_trade(study)]
         if part
     )
+
+
+def called(study, environment=None):
+    """Return how the user calls a study: by the command that started it, else in the two ways that there are.
+
+    `scripts/run` and `graindrive run` leave their name and the study's in $GRAINDRIVE_CALLED.
+    """
+    own = (os.environ if environment is None else environment).get("GRAINDRIVE_CALLED", "")
+    file = next((word for word in sys.argv[:1] if Path(word).stem == study.name), f"{study.name}.py")
+    name = study.name if study.name in house() else file
+    return one_line(own, 200) or f"scripts/run {name} [key=value …]   or   yade -n -x {file}"
 
 
 def help_table(study):
@@ -147,15 +189,17 @@ def help_table(study):
     runs = {scale: study.usual(scale) for scale in presets}
 
     def default_of(key):
-        usual = shown(defaults.get(key, cls.__fields__[key].default))
+        usual = as_typed(defaults.get(key, cls.__fields__[key].default))
         found = {
-            scale: taken_text(runs[scale], key) or shown(values.get(key, usual)) for scale, values in presets.items()
+            scale: taken_text(runs[scale], key) or as_typed(values.get(key, usual)) for scale, values in presets.items()
         }
         changed = [f"{scale}: {text}" for scale, text in found.items() if key in presets[scale] or text != usual]
         return ", ".join(changed) if len(changed) == len(presets) else ", ".join([usual] + changed)
 
     for key, field in cls.__fields__.items():
-        rows.append((key, cls.unit(key), default_of(key), f"{field.field_info.description} ({allowed(field)})"))
+        condition = cls.condition(key)
+        rule = f"{allowed(field)}; only with {condition.rule}" if condition else allowed(field)
+        rows.append((key, cls.unit(key), default_of(key), f"{field.field_info.description} ({rule})"))
     return aligned(rows)
 
 
@@ -192,20 +236,7 @@ def costs(study):
     return f"cost on one core, without the packing: {'; '.join(words)}"
 
 
-def aligned(rows):
-    """Return rows of cells as lines of text with aligned columns."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]
-    return "\n".join("  ".join([*(cell.ljust(w) for cell, w in zip(row, widths)), row[-1]]).rstrip() for row in rows)
-
-
 def taken_text(p, key):
     """Return the derived value of a key that is `auto` as "auto (46.2)"; "" for any other key."""
     taken = p.taken()[key]
-    return f"auto ({shown(taken)})" if getattr(p, key) is None and taken is not None else ""
-
-
-def shown(value):
-    """Return a default as the user would type it."""
-    if value is None:
-        return "auto"
-    return str(int(value)) if isinstance(value, bool) else str(value)
+    return f"auto ({as_typed(taken)})" if getattr(p, key) is None and taken is not None else ""

@@ -12,6 +12,7 @@ import traceback
 from pathlib import Path
 
 from ..base import output, signals
+from ..exports import exports
 from ..runs import run_data
 from ..beds.cache import cache_folder
 from .command_line import parameters_or_exit
@@ -63,9 +64,16 @@ def carry_out(study, p):
     try:
         made(study, p)
     except AlreadyComplete:
+        exported(study, p)
         filmed(study, p)
         raise
     filmed(study, p)
+
+
+def exported(study, p):
+    """Write the exports that are asked for and that a run made earlier does not hold."""
+    if p.exports and (names := exports.write_missing(run_place.place_of(p.out), p.exports)):
+        print(f"{study.name}: wrote {', '.join(names)}", file=sys.stderr)
 
 
 def filmed(study, p):
@@ -89,6 +97,8 @@ def made(study, p):
     kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
     if p.choice:
         print(f"{study.name}: accuracy={p.accuracy}: {p.choice.words}", file=sys.stderr)
+    for key, condition in p.given_in_vain.items():
+        print(f"{study.name}: this run does not use {key}, which needs {condition.rule}", file=sys.stderr)
     with signals.handled(), RunFolder(p, study=study.name, **kept) as folder:
         if p.choice:
             folder.note(**p.choice.facts())

@@ -2,19 +2,40 @@
 
 import difflib
 import math
+import re
 
 from ..base.errors import UsageError, one_line
 from ..parameters import allowed, choices, plain_type
 from ..base.plain_yaml import read, shortened
+from ..study import house
 
 SWITCH = {"1": True, "true": True, "yes": True, "on": True, "0": False, "false": False, "no": False, "off": False}
 
 
 def require_key(cls, key):
-    """Raise UsageError with the nearest correct spelling unless `key` is a key of the class."""
+    """Raise UsageError with a hint (keys that hold the word, studies that have it, a spelling) unless the class has `key`."""
     if key not in cls.__fields__:
-        hint = nearest(str(key).lstrip("-").replace("-", "_"), cls.__fields__, "did you mean ", "? ")
+        word = str(key).lstrip("-").replace("-", "_").strip().lower()
+        hint = longer(word, cls.__fields__) + elsewhere(word) or nearest(word, cls.__fields__, "did you mean ", "? ")
         raise UsageError(f"there is no key '{one_line(key)}'; {hint}allowed: {' '.join(cls.__fields__)}")
+
+
+def longer(word, keys):
+    """Return a question after the keys of which `word` is a part, as `spin` of spin_ratio; "" if there are none."""
+    found = [key for key in keys if f"_{word}_" in f"_{key}_"] if word.strip("_") else []
+    return f"did you mean {enumerated(found, 'or')}? " if found else ""
+
+
+def elsewhere(key):
+    """Return which studies of this checkout have a key, in words; "" if none has it. Their files are searched, not run."""
+    declared = re.compile(rf"^    {re.escape(key)}: .*= quantity\(", re.MULTILINE) if key.isidentifier() else None
+    found = [name for name, file in house().items() if declared and declared.search(file.read_text(encoding="utf-8"))]
+    return f"{enumerated(found, 'and')} {'have' if len(found) > 1 else 'has'} it; " if found else ""
+
+
+def enumerated(words, last):
+    """Return words as one writes them in a sentence, with "and" or "or" as `last`."""
+    return f" {last} ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def nearest(word, words, before, after):

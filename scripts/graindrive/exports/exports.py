@@ -36,7 +36,7 @@ def write(path, formats):
     check(formats)
     for name in formats:
         run = Run(path)
-        if lacking := nothing_for(name, run):
+        if lacking := nothing_for(name, run, path):
             raise RunError(lacking)
         if run.frame_names and "period" not in run.labels(f"frames/{run.frame_names[0]}")[1]:
             raise RunError(
@@ -45,20 +45,34 @@ def write(path, formats):
         WRITERS[name](run, units_of(run))
 
 
-def nothing_for(name, run):
-    """Return a message if a run holds no data for the format `name`; "" if it does."""
+def nothing_for(name, run, out):
+    """Return a message if a run, whose folder the user knows as `out`, holds no data for the format `name`; "" if it does."""
     if run.frame_names or name == "vtk" and run.names("fields"):
         return ""
-    return f"{run.path} holds no frames{' and no fields' if name == 'vtk' else ''}: there is nothing for export={name}"
+    return (
+        f"{out} holds no frames{' and no fields' if name == 'vtk' else ''}: there is nothing for export={name}; leave it out,"
+        " or have the study keep pictures of its grains (folder.frame)"
+    )
 
 
-def write_what_is_there(path, formats):
-    """Do the same as `write`, but print a message instead of an error if a run holds no data for a format."""
+def write_what_is_there(path, formats, out):
+    """Do the same as `write`, but print a message instead of an error if a run holds no data for a format.
+
+    The run folder may still have another name, `path`, than the one that the user knows, `out`.
+    """
     run = Run(path)
-    lacking = {name: nothing_for(name, run) for name in formats}
+    lacking = {name: nothing_for(name, run, out) for name in formats}
     for words in filter(None, lacking.values()):
         print(f"graindrive: {words}", file=sys.stderr)
     write(path, [name for name in formats if not lacking[name]])
+
+
+def write_missing(out, formats):
+    """Write those of `formats` that the finished run folder `out` does not hold yet; return the names of their files."""
+    missing = [name for name in formats if not (out / FILES[name]).exists()]
+    check(missing)
+    write_what_is_there(out, missing, out)
+    return [FILES[name] for name in missing if (out / FILES[name]).exists()]
 
 
 def units_of(run):

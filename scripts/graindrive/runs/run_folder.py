@@ -221,7 +221,7 @@ class RunFolder:
         if lacking := without_value(self.summary):
             self.say(f"the run gives no value of {', '.join(lacking)}: null in summary.json")
         self.finish_data("complete")
-        run_remains.draw(self.path, self.figure, self.parameters.exports)
+        run_remains.draw(self.path, self.out, self.figure, self.parameters.exports)
         with run_place.held(self.out.parent):
             self.close()
             run_remains.take_name(self.path, self.out, self.parameters.digest())

@@ -81,7 +81,7 @@ def finish_killed(run, part):
     try:
         digest, study = (run_file.read_attribute(part / run_file.NAME, name) for name in ("digest", "study"))
         formats = formats_of(run_file.parameters_in(part / run_file.NAME))
-        draw(part, run.figure if study == run.study else None, formats)
+        draw(part, run.out, run.figure if study == run.study else None, formats)
         take_name(part, run.out, digest)
         say(run, f"a killed run was complete except for its name; it is now in {run.out}")
     except Exception as error:  # a figure may raise any error; the error for a taken place names the folder of the run
@@ -127,14 +127,14 @@ def copy_attributes(sources, file):
 # ---- how a run ends --------------------------------------------------------------------------------------------------
 
 
-def draw(part, figure, formats):
+def draw(part, out, figure, formats):
     """Add the figure and the frames in these formats to the folder of a run with complete `run.h5` and `summary.json`.
 
-    All of them can be made again, so a kill meanwhile does no harm.
+    All of them can be made again, so a kill meanwhile does no harm. Messages call the folder `out`, its name when complete.
     """
     if figure is not None:
         figure(part)
-    exports.write_what_is_there(part, formats)
+    exports.write_what_is_there(part, formats, out)
 
 
 def formats_of(stored):

@@ -11,7 +11,7 @@ from ..campaign import execution
 from ..commands.command_line import split
 from ..base.errors import UsageError, one_line
 from ..commands.headless import guarded
-from ..commands.parameter_values import convert
+from ..commands.parameter_values import argument_text, convert
 from ..postproc.tuning import held_out as held_out_report
 from ..postproc.tuning.report import write_report
 from ..runs.provenance import code_version, cpu_model
@@ -20,7 +20,7 @@ from ..study import duration, loaded
 from ..accuracy import book, choice
 from . import held_out, ladder
 from ..accuracy.effects import CONFIDENCE
-from .search import MOST_SEEDS, Search
+from .search import FEWEST_SEEDS, MOST_SEEDS, Search
 from .trials import Trials
 from ..accuracy.words import in_words, shown
 
@@ -60,17 +60,18 @@ def tune(arguments):
     file = study_file(name)
     study = loaded(file)
     options, keys = parted(study, words)
-    target = choice.asked_of(study, options["target"])
+    target = choice.asked_of(study, options["target"], "target")
     scenes, given = scenes_of(study, keys)
     reference = ladder.reference_of(study, given)
-    for scene in scenes:
-        ladder.parameters_of(study, {**scene, **reference})
-    vary = varied(study, options["vary"])
+    parameters = [ladder.parameters_of(study, {**scene, **reference}) for scene in scenes]
+    refuse_unused(keys, parameters)
+    vary = varied(study, options["vary"], parameters)
     ladders = {key: ladder.rungs(study, {**scenes[0], **reference}, key) for key in vary}
     out = Path(options["out"] or f"tune_{study.name}").absolute()
     trials = Trials(study, file, out, scenes, reference, Path.cwd())
     found = {key: values for key, (values, _) in ladders.items()}
-    search = Search(trials, found, target.observable, target.error, CONFIDENCE, whole(options, "seeds"))
+    seeds = seeds_of(parameters, whole(options, "seeds"))
+    search = Search(trials, found, target.observable, target.error, CONFIDENCE, max(seeds), min(seeds))
     tell_plan(search, ladders, options)
     if "-n" in flags:
         return 0
@@ -83,7 +84,7 @@ def tune(arguments):
         command = shlex.join(["scripts/tune", name, *(w for w in words if not w.startswith(("out=", "cores=")))])
         measured = measured_book(search, command)
         book.write(out / "measured.json", measured)
-        tuned = write_parameters(out / "tuned.yaml", search)
+        tuned = write_parameters(out / "tuned.yaml", search, parameters)
         report = write_report(out, search, measured)
     print(
         f"{NAME}: see {report}; {tuned.name} holds the levers chosen, for scripts/run {name} @{tuned}", file=sys.stderr
@@ -156,13 +157,36 @@ def scenes_of(study, keys):
     return scenes, given
 
 
-def varied(study, text):
-    """Return the levers to vary; UsageError for a key that is none."""
-    names = [name.strip() for name in text.split(",") if name.strip()] or list(study.levers)
+def refuse_unused(keys, parameters):
+    """Raise UsageError for a key given that has several values but is not used in all scenes, or one that no scene uses."""
+    for key, text in keys.items():
+        broken = [p.not_used()[key] for p in parameters if key in p.not_used()]
+        if len(broken) == len(parameters) or ("," in text and broken):
+            raise UsageError(
+                f"{argument_text(key, text)} has no effect: {key} is used only with {broken[0].rule}, and"
+                f" {'a scene' if len(parameters) > 1 else 'the scene'} has"
+                f" {next(broken[0].state(p) for p in parameters if key in p.not_used())}; leave {key} out"
+            )
+
+
+def varied(study, text, parameters):
+    """Return the levers to vary: those named, or all that each scene uses; UsageError for a key that is none of these.
+
+    `parameters` are those of the scenes.
+    """
+    unused = {key: (condition, p) for p in parameters for key, condition in p.not_used().items()}
+    open_ones = [key for key in study.levers if key not in unused]
+    names = [name.strip() for name in text.split(",") if name.strip()] or open_ones
     for name in names:
         if name not in study.levers:
             raise UsageError(
-                f"vary={one_line(text)}: {one_line(name)} is no lever of {study.name}; there are: {' '.join(study.levers)}"
+                f"vary={one_line(text)}: {one_line(name)} is no lever of {study.name}; there are: {' '.join(open_ones)}"
+            )
+        if name in unused:
+            condition, p = unused[name]
+            raise UsageError(
+                f"vary={one_line(text)}: {name} has no effect: it is used only with {condition.rule}, and the scene has"
+                f" {condition.state(p)}; these have one: {' '.join(open_ones)}"
             )
     return names
 
@@ -187,17 +211,24 @@ def whole(options, key):
     return int(options[key])
 
 
+def seeds_of(parameters, most):
+    """Return the (fewest, most) seeds of a setting: one where no scene uses the seed, for its runs would be the same."""
+    return (1, 1) if all("seed" in p.not_used() for p in parameters) else (FEWEST_SEEDS, most)
+
+
 def tell_plan(search, ladders, options):
     """Say what is varied from where, and what the reference costs."""
     trials = search.trials
     print(
         f"{NAME}: reference {in_words(sorted(trials.reference.items()))}; {len(trials.scenes)} scenes", file=sys.stderr
     )
+    if search.most_seeds == 1:
+        print(f"{NAME}: no scene uses the seed: each setting has one run in a scene", file=sys.stderr)
     for key, (values, end) in ladders.items():
         tried = ", ".join(shown(value) for value in values) or "nothing to try"
         print(f"{NAME}: {key}: {tried}{f' ({end})' if end else ''}", file=sys.stderr)
     if trials.study.cost:
-        start = search.repeats((), 2)
+        start = search.repeats((), search.fewest_seeds)
         seconds = sum(trials.expected_seconds(trial) for trial in start)
         print(
             f"{NAME}: {len(start)} runs of the reference: about {duration(seconds)} of the budget, {options['budget']}",
@@ -256,9 +287,10 @@ def reference_trials(trials):
     return [next(t for t in trials.asked if t.setting == () and t.scene == k) for k in range(len(trials.scenes))]
 
 
-def write_parameters(path, search):
-    """Write the levers of the chosen setting as a file of parameters; return its path."""
+def write_parameters(path, search, parameters):
+    """Write the levers of the chosen setting that a scene uses, as a file of parameters; return its path."""
     levers = {**search.trials.reference, **dict(search.chosen())}
+    levers = {key: value for key, value in levers.items() if not all(key in p.not_used() for p in parameters)}
     lines = [f"{key}: {'auto' if v is None else v}" for key, v in sorted(levers.items())]  # with all digits
     text = "# Levers that scripts/tune chose; a study takes this file as @FILE.\n" + "\n".join(lines) + "\n"
     whole_files.write_text(path, text)
@@ -268,7 +300,7 @@ def write_parameters(path, search):
 def launch(file, scene, tuned):
     """Run the study with the first scene's keys and the chosen levers; return its exit code."""
     keys = [f"{key}={int(v) if isinstance(v, bool) else v}" for key, v in scene.items()]
-    return subprocess.call([*execution.PROGRAM, str(file), *keys, f"@{tuned}"])
+    return subprocess.call([*execution.PROGRAM, str(file), *keys, f"@{tuned}", "unused=allow"])
 
 
 if __name__ == "__main__":

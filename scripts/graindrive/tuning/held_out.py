@@ -137,7 +137,9 @@ def points_of(study, study_file, book, folder, count, cores, seed, observable=""
 
 def choice_for(study, scene, accuracy, seed):
     """Return what the study takes for an `accuracy`, as NAME:0.05, in a scene; UsageError where it does not find the book."""
-    words = [argument(study.parameters, key, value) for key, value in {**scene, "seed": seed}.items()]
+    words = [
+        argument(study.parameters, key, value) for key, value in {**scene, "seed": seed, "unused": "allow"}.items()
+    ]
     p = parse(study, [*words, f"accuracy={accuracy}"], environment={})
     if p.choice.setting is None:
         raise UsageError(f"{' '.join(words)}: {p.choice.words}")

@@ -14,8 +14,9 @@ def reference_of(study, given):
 
 
 def parameters_of(study, values):
-    """Return the checked parameters for a dict of values; UsageError for values that the study refuses."""
-    p = parse(study, [argument(study.parameters, key, value) for key, value in values.items()], environment={})
+    """Return the checked parameters for a dict of values, some of which may have no effect; UsageError for refused ones."""
+    words = [argument(study.parameters, key, value) for key, value in {**values, "unused": "allow"}.items()]
+    p = parse(study, words, environment={})
     study.check(p)
     return p
 

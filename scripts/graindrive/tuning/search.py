@@ -32,10 +32,11 @@ class Search:
     target: float
     confidence: float
     most_seeds: int = MOST_SEEDS
+    fewest_seeds: int = FEWEST_SEEDS
 
     def next_trials(self, left):
         """Return the trials to make next, the largest savings first, within `left` core-seconds; none at the end."""
-        start = self.repeats((), FEWEST_SEEDS)
+        start = self.repeats((), self.fewest_seeds)
         if start:
             return start
         wanted = [t for t in (self.next_of(key) for key in self.ladders) if t]
@@ -76,7 +77,7 @@ class Search:
         if any(trial.setting == setting for trial in self.trials.failed):
             return FAILED
         seeds = self.seeds_of(setting)
-        if seeds < FEWEST_SEEDS:
+        if seeds < self.fewest_seeds:
             return OPEN
         effect = self.trials.effect(setting, self.observable)
         half = effect.interval(self.confidence)
@@ -108,7 +109,7 @@ class Search:
         for value, verdict in self.walk(key):
             if verdict == OPEN:
                 setting = ((key, value),)
-                return self.repeats(setting, max(FEWEST_SEEDS, self.seeds_of(setting) + 1))
+                return self.repeats(setting, max(self.fewest_seeds, self.seeds_of(setting) + 1))
         return []
 
     def best(self):
@@ -130,7 +131,7 @@ class Search:
         for setting in self.combinations():
             verdict = self.judge(setting)
             if verdict == OPEN:
-                return self.repeats(setting, max(FEWEST_SEEDS, self.seeds_of(setting) + 1))
+                return self.repeats(setting, max(self.fewest_seeds, self.seeds_of(setting) + 1))
             if verdict == GOOD:
                 return []
         return []
