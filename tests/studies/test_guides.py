@@ -112,7 +112,7 @@ def test_a_new_law_is_known_to_registry_spheres_and_functors(tmp_path):
     compiled(tmp_path, *WITH_YADE, "-isystem", python, "-fsyntax-only", functors)
 
 
-# The binding as in drives_py.cpp, in a module of its own together with the sources that it needs, so that headers are compiled once.
+# The binding as in drives_py.cpp, in a module of its own with the sources that it needs, so that headers are compiled once.
 MODULE = """
 #include "engines/seam/attributes.cpp"
 #include "engines/seam/bind.cpp"
