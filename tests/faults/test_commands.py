@@ -148,6 +148,27 @@ def test_only_missing_packages_are_installed(checkout, stand_in, tmp_path):
     assert update.endswith("update") and install.endswith("install --no-install-recommends yade")
 
 
+@pytest.mark.parametrize("group", ["run", "compile"])
+def test_compilers_are_installed_first_and_compile_while_the_rest_is_installed(checkout, stand_in, tmp_path, group):
+    """The miniature has no target for the early compilation: that fails, and the build goes on. `compile` builds nothing."""
+    stand_in(
+        "dpkg-query",
+        f"sed 's/[ ?#].*//; /^$/d; /^g++/d; /^python3-yade/d; s/^/installed /' {checkout}/scripts/packages.txt",
+    )
+    stand_in("dpkg", "exit 0")
+    stand_in("sudo", '"$@"')
+    stand_in("apt-get", f'echo "${{@#*=}}" | sed "s/.*recommends //" >>{tmp_path}/calls')
+    done = call(checkout, "setup", group, environment=stand_in.environment)
+    assert done.returncode == 0, done.stderr
+    installed = (tmp_path / "calls").read_text().splitlines()[1:]
+    assert installed == (["g++", "g++ python3-yade"] if group == "run" else ["g++"])
+    assert (
+        (checkout / "build" / "compile.log").exists()
+        == (checkout / "build" / "build.ninja").exists()
+        == (group == "run")
+    )
+
+
 def listed_packages():
     """Return [(name, groups, reason)] of scripts/packages.txt."""
     lines = (ROOT / "scripts" / "packages.txt").read_text(encoding="utf-8").splitlines()
