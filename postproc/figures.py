@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 from matplotlib.collections import EllipseCollection, LineCollection  # noqa: E402
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon  # noqa: E402
+from matplotlib.ticker import LogLocator, StrMethodFormatter  # noqa: E402
 
 from ..base.whole_files import written  # noqa: E402
 from . import legends  # noqa: E402
@@ -53,6 +54,14 @@ def save_as(figure, folder, name):
         with written(Path(folder) / f"{name}.{ending}") as temporary:
             figure.savefig(temporary, format=ending, metadata={"CreationDate": None} if ending == "pdf" else None)
     plt.close(figure)
+
+
+def number_logarithmic(axis):
+    """Write plain numbers (20, 50, 100) at a logarithmic axis whose limits are set: in a short range each digit has one."""
+    low, high = axis.get_view_interval()
+    axis.set_minor_locator(LogLocator(subs=(2, 5) if high > 12 * low else range(2, 10)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
 
 
 def set_title(figure, parts):

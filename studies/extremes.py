@@ -107,6 +107,7 @@ def run(p, folder):
         folder.write("trials", {name: (column(values), "-") for name, values in found.trials.items()})
     folder.summarize(
         outcome=found.word,
+        meaning=CASES[p.case].meaning,
         measured=(found.measured, "-"),
         expected=(found.expected, "-"),
         bound=(found.tolerance, "-"),

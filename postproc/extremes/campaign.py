@@ -38,8 +38,9 @@ def outcome_claims(_campaign, rows):
 
 
 def label(row):
-    """Return a run's case with what is unusual about it."""
-    return row["case"] + ", single" * (row["precision"] == "single") + ", YADE's loop" * (row["loop"] == "yade")
+    """Return the curve's name in a panel of one kind of case: 2D or 3D, single precision, YADE's loop."""
+    dimensions = row["case"][-2:].upper()
+    return dimensions + ", single" * (row["precision"] == "single") + ", YADE's loop" * (row["loop"] == "yade")
 
 
 def draw_outcomes(_campaign, rows):
@@ -47,7 +48,7 @@ def draw_outcomes(_campaign, rows):
     groups = [group for _, group in ordered(rows).groupby(["loop", "precision"], sort=False)]
     longest = max(len(group) for group in groups)
     figure, panels = plt.subplots(
-        1, len(groups), figsize=(2.4 * len(groups), 0.115 * longest + 0.9), layout="constrained", squeeze=False
+        1, len(groups), figsize=(3.4 * len(groups), 0.115 * longest + 1.0), layout="constrained", squeeze=False
     )
     for axes, group in zip(panels[0], groups):
         part = np.maximum(group["error_over_bound"].astype(float), LEAST)
@@ -56,11 +57,11 @@ def draw_outcomes(_campaign, rows):
         axes.axvline(1, color=VERMILLION, linewidth=0.7)
         first = group.iloc[0]
         axes.set_title(f"loop={first['loop']}, {first['precision']}", fontsize=7)
-        axes.set_yticks(range(len(group)), group["case"], fontsize=4.5)
+        axes.set_yticks(range(len(group)), group["meaning"], fontsize=4.5)
         axes.set(xscale="log", xlim=(LEAST / 2, 10), ylim=(longest - 0.5, -0.5))
-        axes.set_xlabel("|measured − expected|/bound", fontsize=7)
+        axes.set_xlabel("|measured − expected| / bound", fontsize=7)
     handles = [plt.Line2D([], [], marker="o", linestyle="", markersize=3, color=c, label=w) for w, c in COLOURS.items()]
-    panels[0][-1].legend(handles=handles, loc="lower right", fontsize=5)
+    figure.legend(handles=handles, loc="outside lower center", ncol=len(handles), fontsize=6, frameon=False)
     return figure
 
 
@@ -113,12 +114,14 @@ def draw_far(campaign, rows):
             trials["distance"], np.maximum(trials["error"], 1e-17), MARKERS[k % 6] + "-", markersize=3, label=label(row)
         )
     left.set(xscale="log", yscale="log", xlabel="distance from the origin [d]", ylabel="error of the restitution")
+    left.set_title("one impact far from the origin", fontsize=7)
     left.legend(fontsize=5)
     for k, (row, trials) in enumerate(runs_of(campaign, rows, "bound_pair_")):
-        for name, line in (("energy", "-"), ("place", ":")):
+        for name, line in (("energy", "-"), ("position", ":")):
             size = np.maximum.accumulate(np.abs(trials[name]))
             right.plot(trials["step"], np.maximum(size, 1e-17), line, color=f"C{k}", label=f"{label(row)}: {name}")
-    right.set(xscale="log", yscale="log", xlabel="steps", ylabel="error over the swing's, largest so far")
+    right.set(xscale="log", yscale="log", xlabel="steps", ylabel="largest relative error so far")
+    right.set_title("a grain that oscillates on another", fontsize=7)
     right.legend(fontsize=4.5)
     return figure
 
@@ -131,13 +134,17 @@ def draw_friction(campaign, rows):
         if row["precision"] == "double" and row["loop"] == "grain":
             left.plot(trials["mu"], trials["expected"], "_", color=BLACK, markersize=7)
     left.set_xscale("symlog", linthresh=0.01)
-    left.set(xlabel="μ", ylabel="surfaces' velocity after, over v_n", ylim=(-1.4, 1.4))
+    left.set(
+        xlabel="friction coefficient μ", ylabel="sliding velocity after / normal velocity before", ylim=(-1.4, 1.4)
+    )
     left.legend(fontsize=5)
     for k, (row, trials) in enumerate(runs_of(campaign, rows, "drum_")):
         if "viscosity" in trials:
             sizes = np.maximum(np.abs(trials["error"]), 1e-17)
-            right.plot(trials["viscosity"], sizes, MARKERS[k % 6] + "-", markersize=3, label=row["case"])
-    right.set(xscale="log", yscale="log", xlabel="η_max  [m √(g/d)]", ylabel="error")
+            right.plot(trials["viscosity"], sizes, MARKERS[k % 6] + "-", markersize=3, label=row["meaning"])
+    left.set_title("two grains hit each other obliquely", fontsize=7)
+    right.set_title("a drum's continuum", fontsize=7)
+    right.set(xscale="log", yscale="log", xlabel="η_max  [m √(g/d)]", ylabel="relative error")
     right.legend(fontsize=5)
     return figure
 
@@ -176,7 +183,7 @@ REPORT = Report(
             SWEEP,
             "Far away and for long",
             "Left: restitution of an impact far from the origin less that at the origin. Right: a pair bound by weight, its"
-            " energy and its place less those of leapfrog's own orbit.",
+            " energy and its position less those of leapfrog's own orbit.",
             no_claims,
             draw_far,
         ),

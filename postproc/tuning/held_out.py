@@ -1,5 +1,6 @@
 """The report of books on trial: how often a run chosen by its accuracy lies within it, and how well its cost was foretold."""
 
+import numpy as np
 from scipy import stats
 
 from ...base.whole_files import write_text
@@ -28,24 +29,27 @@ def drawn(points):
         style = dict(color=COLOURS[k % 6], marker=MARKERS[k % 6], linestyle="none", markersize=4, label=study)
         left.plot([100 * p.asked for p in own], [100 * max(p.error, 1e-4) for p in own], **style)
         right.plot([p.predicted for p in own], [p.measured for p in own], **style)
-    for axes, factor in ((left, 0), (right, NEAR)):
-        axes.set(xscale="log", yscale="log")
-        low, high = axes.get_xlim()
-        axes.plot([low, high], [low, high], color=figures.GREY, linewidth=0.8)
-        if factor:
-            axes.fill_between(
-                [low, high],
-                [low / (1 + factor), high / (1 + factor)],
-                [low * (1 + factor), high * (1 + factor)],
-                color=figures.GREY,
-                alpha=0.3,
-                linewidth=0,
-            )
-        axes.set_xlim(low, high)
+    draw_equality(left, "as asked for")
+    draw_equality(right, "as foretold", NEAR)
     left.set(xlabel="error asked for [%]", ylabel="error that came out [%]")
     right.set(xlabel="core-seconds foretold", ylabel="core-seconds taken")
     left.legend(fontsize=6)
+    right.legend(fontsize=6)
     return figure
+
+
+def draw_equality(axes, words, near=0.0):
+    """Draw the line on which y is x, named by `words`, on logarithmic axes, and the band within the part `near` of it."""
+    axes.set(xscale="log", yscale="log")
+    ends = np.array(axes.get_xlim())
+    axes.plot(ends, ends, color=figures.GREY, linewidth=0.8, label=words)
+    if near:
+        low, high = ends / (1 + near), ends * (1 + near)
+        label = f"within {100 * near:.0f} %"
+        axes.fill_between(ends, low, high, color=figures.GREY, alpha=0.3, linewidth=0, label=label)
+    axes.set_xlim(ends)
+    for axis in (axes.xaxis, axes.yaxis):
+        figures.number_logarithmic(axis)
 
 
 def parts(name, points, words):

@@ -3,7 +3,6 @@
 import math
 
 import pandas as pd
-from matplotlib.ticker import LogLocator, StrMethodFormatter
 
 from ...accuracy.effects import CONFIDENCE
 from ...accuracy.words import in_words, shown
@@ -96,9 +95,8 @@ def drawn(search, rows):
             label="one run's error, 90 %: best at the cost",
         )
     axes.set(xscale="log", yscale="log", xlabel="core-seconds of a run", ylabel=f"change of {name} [%]")
-    axes.xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
-    for set_formatter in (axes.xaxis.set_major_formatter, axes.xaxis.set_minor_formatter):
-        set_formatter(StrMethodFormatter("{x:g}"))
+    figures.number_logarithmic(axes.xaxis)
+    figures.number_logarithmic(axes.yaxis)
     axes.annotate(
         "reference", (reference["core_seconds"], axes.get_ylim()[1]), fontsize=6, rotation=90, va="top", ha="right"
     )

@@ -78,7 +78,7 @@ def bound_pair(setting, *, dimensions):
         dimensions,
         gravity=weight,
     )
-    trials = dict(step=[], energy=[], place=[])
+    trials = dict(step=[], energy=[], position=[])
     part = max(1, setting.steps // PARTS)
     first = None
     while O.iter < setting.steps:
@@ -93,9 +93,9 @@ def bound_pair(setting, *, dimensions):
         angle = math.fmod(turn * O.iter, 2 * math.pi)
         trials["step"].append(O.iter)
         trials["energy"].append(energy - 1)
-        trials["place"].append((y - amplitude * math.cos(angle)) / amplitude)
+        trials["position"].append((y - amplitude * math.cos(angle)) / amplitude)
     worst = max(trials["energy"], key=abs)
-    apart = max(trials["place"], key=abs)
+    apart = max(trials["position"], key=abs)
     n = setting.steps
     sentence = (
         f"a grain oscillates on another under its weight, {n:.3g} steps: largest relative change of the oscillation's energy;"
