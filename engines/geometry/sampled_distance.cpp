@@ -86,9 +86,11 @@ void SampledDistance<D>::check() const
 {
 	require(distances_.size() == grid_.size(), "sampled distances must be as many as nodes, " + std::to_string(grid_.size()),
 		distances_.size(), "give one distance per node, x fastest");
+	// Of millions of nodes only a wrong one needs the text of its place.
 	for (std::size_t node = 0; node < distances_.size(); ++node)
-		require(std::isfinite(distances_[node]), "sampled distances must be finite", distances_[node],
-			"correct the one at " + text(grid_.node(index_of(node))));
+		if (!std::isfinite(distances_[node]))
+			require(false, "sampled distances must be finite", distances_[node],
+				"correct the one at " + text(grid_.node(index_of(node))));
 	const auto [least, most] = std::minmax_element(distances_.begin(), distances_.end());
 	require(*least <= 0 && *most > 0, "sampled distances must be <= 0 at some nodes, inside the solid, and > 0 at others",
 		text(Vec<2>{ *least, *most }), "extend the grid beyond the surface, with a spacing smaller than the solid's thickness");
@@ -102,8 +104,9 @@ void SampledDistance<D>::check_slopes() const
 		for (std::size_t k = 0, stride = 1; k < D; stride *= grid_.count[k++]) {
 			if (index[k] + 1 == grid_.count[k]) continue;
 			const double slope = std::abs(distances_[node + stride] - distances_[node]) / grid_.spacing[k];
-			require(slope <= steepest, "sampled distances of neighbours must not differ by more than their spacing", slope,
-				"give true distances at " + text(grid_.node(index)));
+			if (!(slope <= steepest))
+				require(false, "sampled distances of neighbours must not differ by more than their spacing", slope,
+					"give true distances at " + text(grid_.node(index)));
 		}
 	}
 }
@@ -177,8 +180,9 @@ Nearest<D> SampledDistance<D>::inside(const Vec<D>& at) const
 template <int D>
 Nearest<D> SampledDistance<D>::beyond(const Vec<D>& at, const Vec<D>& in_grid) const
 {
-	require(margin_ > 0, "a sampled distance is known only inside its grid if the solid reaches the grid's outer layer", at,
-		"sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
+	if (!(margin_ > 0))
+		require(false, "a sampled distance is known only inside its grid if the solid reaches the grid's outer layer", at,
+			"sample a larger grid, from " + text(grid_.low) + " to " + text(grid_.high()) + " now");
 	const double way = norm(at - in_grid);
 	return { way + margin_, (at - in_grid) / way };
 }

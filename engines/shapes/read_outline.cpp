@@ -65,6 +65,14 @@ bool is_unit(const std::string& text)
 	return text.size() > 1 && ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')'));
 }
 
+/// Refuses a unit in brackets other than d, because numbers are taken as grain diameters whatever a header says.
+void require_diameters(const std::string& unit, const std::string& line, std::size_t line_number)
+{
+	if (stripped(unit.substr(1, unit.size() - 2)) == "d") return;
+	throw std::invalid_argument("line " + std::to_string(line_number) + " gives lengths in " + shown(unit) + ", in " + shown(line) +
+								"; an outline has them in grain diameters: divide them by d and write [d] or no unit");
+}
+
 /// True if the field is the letter `name`, lower or upper case, alone or with a unit in brackets.
 bool names_column(const std::string& field, char name)
 {
@@ -74,12 +82,15 @@ bool names_column(const std::string& field, char name)
 }
 
 /// True if the fields name the columns x and y. Any other first line is read as a vertex, so that one with a mistyped digit is
-/// not skipped as a header.
-bool is_header(std::vector<std::string> fields)
+/// not skipped as a header. Throws std::invalid_argument for a header with a unit other than d.
+bool is_header(std::vector<std::string> fields, const std::string& line, std::size_t line_number)
 {
 	if (fields.size() == 4 && is_unit(fields[1]) && is_unit(fields[3]))  // blanks separate names from units too
 		fields = { fields[0] + fields[1], fields[2] + fields[3] };
-	return fields.size() == 2 && names_column(fields[0], 'x') && names_column(fields[1], 'y');
+	if (fields.size() != 2 || !names_column(fields[0], 'x') || !names_column(fields[1], 'y')) return false;
+	for (const std::string& field : fields)
+		if (const std::string unit = stripped(field.substr(1)); !unit.empty()) require_diameters(unit, line, line_number);
+	return true;
 }
 
 Vector2r vertex_in(const std::string& line, const std::vector<std::string>& fields, std::size_t line_number, bool header_possible)
@@ -102,7 +113,7 @@ Points vertices_in_table(const std::vector<std::string>& lines)
 	for (std::size_t i = 0; i < lines.size(); ++i) {
 		if (lines[i].empty()) continue;
 		const auto fields = fields_of(lines[i]);
-		if (!header_possible || !is_header(fields)) vertices.push_back(vertex_in(lines[i], fields, i + 1, header_possible));
+		if (!header_possible || !is_header(fields, lines[i], i + 1)) vertices.push_back(vertex_in(lines[i], fields, i + 1, header_possible));
 		header_possible = false;
 	}
 	return vertices;

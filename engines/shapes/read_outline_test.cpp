@@ -115,9 +115,18 @@ TEST(ReadOutline, refuses_decimal_commas_from_the_first_line_on)
 TEST(ReadOutline, takes_a_header_that_names_x_and_y)
 {
 	const std::string square = "\n0,0\n2,0\n2,3\n0,3\n";
-	for (const char* header : { "x,y", "X;Y", "x\ty", "x y", "\"x\",\"y\"", "x [d], y [d]", "X (mm);Y (mm)", "x [m] y [m]",
-			 "x[m] y[m]", "\"x [m]\",\"y [m]\"", "x,y,", " x , y # corners" })
+	for (const char* header : { "x,y", "X;Y", "x\ty", "x y", "\"x\",\"y\"", "x [d], y [d]", "X (d);Y (d)", "x [d] y [d]",
+			 "x[d] y[d]", "\"x [d]\",\"y [d]\"", "x,y,", " x , y # corners" })
 		EXPECT_DOUBLE_EQ(area_in(header + square), 6) << header;
+}
+
+TEST(ReadOutline, refuses_a_header_with_another_unit_than_grain_diameters)
+{
+	for (const char* header : { "x [mm],y [mm]", "X (m);Y (m)", "x [d], y [mm]", "x [m] y [m]", "\"x [cm]\",\"y [cm]\"", "x [], y []" }) {
+		const std::string said = refusal(std::string("\n") + header + "\n0,0\n2,0\n2,3\n");
+		EXPECT_TRUE(mentions(said, "line 2 gives lengths in '")) << header << ": " << said;
+		EXPECT_TRUE(mentions(said, "divide them by d and write [d] or no unit")) << header << ": " << said;
+	}
 }
 
 TEST(ReadOutline, does_not_take_a_mistyped_vertex_for_a_header)

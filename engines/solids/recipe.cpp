@@ -153,12 +153,12 @@ void RecipeReader::refuse(const std::string& rule, std::string_view got, const s
 	throw Damaged(rule + ", got '" + shortened(got) + "' as word " + std::to_string(place_) + " of the recipe; " + way_out);
 }
 
-std::string_view RecipeReader::next(const std::string& wanted)
+std::string_view RecipeReader::next(const char* wanted, const char* what)
 {
 	while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
 	if (rest_.empty())
 		throw Damaged("a recipe must be complete, got one that ends after word " + std::to_string(place_) + ", where " +
-					  std::string(kind_) + " needs " + wanted + "; " + own_recipe);
+					  std::string(kind_) + " needs " + wanted + what + "; " + own_recipe);
 	std::size_t length = 0;
 	while (length < rest_.size() && !is_space(rest_[length])) ++length;
 	const std::string_view word = rest_.substr(0, length);
@@ -169,7 +169,7 @@ std::string_view RecipeReader::next(const std::string& wanted)
 
 double RecipeReader::number(const char* what)
 {
-	const std::string_view word = next(std::string("a number, its ") + what);
+	const std::string_view word = next("a number, its ", what);
 	double value = 0;
 	const auto [stopped, error] = std::from_chars(word.data(), word.data() + word.size(), value);
 	if (error != std::errc() || stopped != word.data() + word.size() || std::isnan(value))
@@ -186,7 +186,7 @@ Vec<3> RecipeReader::vector(const char* what)
 
 std::size_t RecipeReader::count(const char* what)
 {
-	const std::string_view word = next(std::string("its ") + what);
+	const std::string_view word = next("its ", what);
 	std::size_t value = 0;
 	const auto [stopped, error] = std::from_chars(word.data(), word.data() + word.size(), value);
 	const bool is_whole = error == std::errc() && stopped == word.data() + word.size();

@@ -52,7 +52,7 @@ public:
 	void end();
 
 private:
-	std::string_view next(const std::string& wanted);
+	std::string_view next(const char* wanted, const char* what = "");
 	[[noreturn]] void refuse(const std::string& rule, std::string_view got, const std::string& way_out) const;
 
 	std::string_view rest_;

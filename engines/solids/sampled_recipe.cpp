@@ -55,8 +55,9 @@ std::string sampled_recipe(const SampleGrid<3>& grid, const std::vector<double>&
 		std::all_of(distances.begin(), distances.end(), [](double d) { return std::isfinite(d); }))
 		require_distance(grid, distances);
 	const SampledDistance<3> checked(grid, distances);
-	require(checked.margin() > 0, "a sampled solid must lie inside its grid", checked.margin(),
-		"which is the least distance in the outer layer of nodes; widen low and high, or sample the solid's complement");
+	require(checked.margin() > 0, "a sampled solid must lie inside its grid, with distances > 0 at all outer nodes",
+		"the least of them " + number_text(checked.margin()),
+		"widen low and high, change the sign of a function that is > 0 inside, or sample a cavity and take the complement");
 	std::string text = "sampled";
 	for (const std::size_t count : grid.count) text += ' ' + std::to_string(count);
 	for (const Vec<3>& v : { grid.low, grid.spacing })

@@ -227,9 +227,25 @@ def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
     assert list((place.path / "tmp").iterdir()) == [] and place.names() == []
 
 
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("print('hello')\n", "defines no STUDY, so it is not a study"),
+        ("STUDY = 1\n", "defines STUDY, but does not run it: end the file with `if __name__"),
+        ("STUDY = (\n", "SyntaxError"),
+    ],
+)
+def test_a_file_that_starts_no_study_is_refused(place, text, said):
+    file = place.work / "none.py"
+    file.write_text(text)
+    command = (sys.executable, "-P", "-c", "from graindrive.commands.run_study import main; main()", str(file))
+    ended = subprocess.run(command, cwd=place.work, env=place.environment, capture_output=True, text=True, timeout=60)
+    assert ended.returncode != 0 and said in ended.stderr and "none.py" in ended.stderr and "Traceback" not in ended.stderr
+
+
 def test_readers_that_leave_do_not_end_the_run(place):
     """As scripts/run starts a study."""
-    program = (sys.executable, "-P", "-c", "from graindrive.base.output import run_program; run_program()")
+    program = (sys.executable, "-P", "-c", "from graindrive.commands.run_study import main; main()")
     process = place.start("out=a", program=program, options=())
     process.stdout.close()
     process.stderr.close()

@@ -7,6 +7,7 @@ import contextlib
 import io
 import os
 import sys
+import traceback
 from pathlib import Path
 
 
@@ -73,4 +74,8 @@ def run_program():
     del sys.argv[0]
     space = sys.modules["__main__"].__dict__
     space["__file__"] = sys.argv[0]
-    exec(compile(Path(sys.argv[0]).read_bytes(), sys.argv[0], "exec"), space)
+    try:
+        code = compile(Path(sys.argv[0]).read_bytes(), sys.argv[0], "exec")
+    except SyntaxError as error:  # a traceback would show this function alone
+        sys.exit("".join(traceback.format_exception_only(error)).rstrip())
+    exec(code, space)

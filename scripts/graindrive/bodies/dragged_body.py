@@ -95,18 +95,28 @@ def sampled_from(path, d):
         low, high, spacing = (np.array(told[name], float) for name in ("low", "high", "spacing"))
         made = surfaces.sampled(lambda points: told["distance"](points / d) * d, low * d, high * d, float(spacing) * d)
         points = grid(low, high, float(spacing))
-        depth = -np.asarray(told["distance"](points), float) / spacing
+        distance = np.asarray(told["distance"](points), float)
     except Exception as error:  # a user's function may raise any error
         raise UsageError(f"shape={one_line(path)}: {one_line(error, 400)}") from None
-    inside = points[depth > -0.5]
-    if not len(inside):
+    if not np.any(distance < 0):
         raise UsageError(
-            f"shape={one_line(path)}: distance(points) is nowhere negative between low and high, so the body has no inside"
+            f"shape={one_line(path)}: distance(points) is nowhere negative between low and high, so the body has no inside;"
+            " lengths are in grain diameters, and distances are > 0 outside of the body"
         )
-    volume = np.clip(0.5 + depth, 0, 1).sum() * spacing**3
-    return DraggedBody(
-        made, inside.min(axis=0) * d, inside.max(axis=0) * d, float(volume * d**3), False, np.zeros((0, 2))
-    )
+    low, high = extent(points, distance, spacing)
+    volume = np.clip(0.5 - distance / spacing, 0, 1).sum() * spacing**3
+    return DraggedBody(made, low * d, high * d, float(volume * d**3), False, np.zeros((0, 2)))
+
+
+def extent(points, distance, spacing):
+    """Return the corners of a body's box, from points (n, 3) `spacing` apart and their distances (n,).
+
+    A ball about a point that reaches the surface ends nowhere beyond the body's own end: inside, because the body contains it;
+    outside, because it contains a point of the body. The error is of the order spacing^2 over the radius of curvature.
+    """
+    near = np.abs(distance) <= 0.6 * spacing  # one of two neighbours on either side of the surface is that near
+    points, distance = points[near], distance[near, None]
+    return (points + distance).min(axis=0), (points - distance).max(axis=0)
 
 
 @functools.lru_cache(maxsize=None)

@@ -21,6 +21,8 @@ from ..runs.run_folder import RunFolder
 from ..runs import run_place
 from ..runs.run_place import AlreadyComplete
 
+was_called = False  # by the study's file; `run_study` asks
+
 # This must precede any import of matplotlib: its font list goes into our cache, not into the home folder.
 os.environ.setdefault("MPLCONFIGDIR", str(cache_folder() / "matplotlib"))
 
@@ -31,6 +33,8 @@ def main(study):
     In batch mode (`yade -x`, or no terminal) the exit code is 0 after success, 2 after a UsageError, 128 + n after signal n, 1
     after any other failure. In a terminal a successful run returns to YADE's console.
     """
+    global was_called
+    was_called = True
     output.forgive()
     leave_nothing_behind()
     p = parameters_or_exit(study, sys.argv[1:])
