@@ -69,7 +69,8 @@ bool is_unit(const std::string& text)
 void require_diameters(const std::string& unit, const std::string& line, std::size_t line_number)
 {
 	if (stripped(unit.substr(1, unit.size() - 2)) == "d") return;
-	throw std::invalid_argument("line " + std::to_string(line_number) + " gives lengths in " + shown(unit) + ", in " + shown(line) +
+	throw std::invalid_argument("line " + std::to_string(line_number) + " gives lengths in " + shown(unit) + ", in " +
+								shown(line) +
 								"; an outline has them in grain diameters: divide them by d and write [d] or no unit");
 }
 
@@ -113,7 +114,8 @@ Points vertices_in_table(const std::vector<std::string>& lines)
 	for (std::size_t i = 0; i < lines.size(); ++i) {
 		if (lines[i].empty()) continue;
 		const auto fields = fields_of(lines[i]);
-		if (!header_possible || !is_header(fields, lines[i], i + 1)) vertices.push_back(vertex_in(lines[i], fields, i + 1, header_possible));
+		if (!header_possible || !is_header(fields, lines[i], i + 1))
+			vertices.push_back(vertex_in(lines[i], fields, i + 1, header_possible));
 		header_possible = false;
 	}
 	return vertices;

@@ -122,7 +122,8 @@ TEST(ReadOutline, takes_a_header_that_names_x_and_y)
 
 TEST(ReadOutline, refuses_a_header_with_another_unit_than_grain_diameters)
 {
-	for (const char* header : { "x [mm],y [mm]", "X (m);Y (m)", "x [d], y [mm]", "x [m] y [m]", "\"x [cm]\",\"y [cm]\"", "x [], y []" }) {
+	for (const char* header :
+		{ "x [mm],y [mm]", "X (m);Y (m)", "x [d], y [mm]", "x [m] y [m]", "\"x [cm]\",\"y [cm]\"", "x [], y []" }) {
 		const std::string said = refusal(std::string("\n") + header + "\n0,0\n2,0\n2,3\n");
 		EXPECT_TRUE(mentions(said, "line 2 gives lengths in '")) << header << ": " << said;
 		EXPECT_TRUE(mentions(said, "divide them by d and write [d] or no unit")) << header << ": " << said;

@@ -171,7 +171,10 @@ def test_functions_that_are_no_distances_are_refused_by_name():
         "between 0.5",
     )
     refused(lambda: surfaces.sampled(lambda p: (p**2).sum(axis=1) - 1, *box), "f/|grad f| is near it")
-    refused(lambda: surfaces.sampled(lambda p: p[:, 2], *box), "with distances > 0 at all outer nodes, got the least of them -2")
+    refused(
+        lambda: surfaces.sampled(lambda p: p[:, 2], *box),
+        "with distances > 0 at all outer nodes, got the least of them -2",
+    )
     refused(lambda: surfaces.sampled(lambda p: torus(p) + 9, *box), "got")  # no solid in the grid
     refused(lambda: surfaces.sampled(torus, (0, 0, 0), (1, 1, -1), 0.1), "low must be less than high along each axis")
     refused(lambda: surfaces.sampled(torus, (0, 0, 0), (1, 1, 1), 0), "spacing must be positive and finite, got 0.0")

@@ -61,7 +61,7 @@ def draw_outcomes(_campaign, rows):
         axes.set(xscale="log", xlim=(LEAST / 2, 10), ylim=(longest - 0.5, -0.5))
         axes.set_xlabel("|measured − expected| / bound", fontsize=7)
     handles = [plt.Line2D([], [], marker="o", linestyle="", markersize=3, color=c, label=w) for w, c in COLOURS.items()]
-    figure.legend(handles=handles, loc="outside lower center", ncol=len(handles), fontsize=6, frameon=False)
+    panels[0][-1].legend(handles=handles, loc="lower left", fontsize=6)
     return figure
 
 

@@ -1,6 +1,10 @@
 """Graindrive: forces on bodies driven through granular media, a study package on YADE."""
 
+from .base import yade_finder
+
 __version__ = "0.1.0"
+
+yade_finder.install()
 
 
 def run(study, *, progress=True, **keys):

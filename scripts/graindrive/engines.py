@@ -1,32 +1,9 @@
 """Imports Debian's YADE and offers every engine, functor and function of the compiled module."""
 
-import contextlib
-import glob
-import io
-import os
-import sys
-
-
-def find_yade():
-    """Put Debian's YADE on the path for a plain `/usr/bin/python3` (the `yade` program has done so already)."""
-    if "yade" in sys.modules:
-        return
-    os.environ.setdefault(
-        "OMP_NUM_THREADS", "1"
-    )  # as the `yade` program does: idle OpenMP threads that spin slow a busy machine
-    for folder in glob.glob("/usr/lib/*/yade-double/py"):
-        if folder not in sys.path:
-            sys.path.append(folder)
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):  # YADE prints the version of Python
-            import yade  # noqa: F401
-    except ModuleNotFoundError as error:
-        raise ImportError(
-            f"cannot import YADE ({error}); install Debian's package yade and use /usr/bin/python3"
-        ) from None
-
-
-find_yade()
+try:
+    import yade  # noqa: F401  (before our module: it loads YADE's libraries)
+except ModuleNotFoundError as error:
+    raise ImportError(f"cannot import YADE ({error}); install Debian's package yade and use /usr/bin/python3") from None
 
 from .base import attribute_help  # noqa: E402
 from .loops import interaction_helpers, pausing, solid_errors  # noqa: E402

@@ -240,7 +240,9 @@ def test_a_file_that_starts_no_study_is_refused(place, text, said):
     file.write_text(text)
     command = (sys.executable, "-P", "-c", "from graindrive.commands.run_study import main; main()", str(file))
     ended = subprocess.run(command, cwd=place.work, env=place.environment, capture_output=True, text=True, timeout=60)
-    assert ended.returncode != 0 and said in ended.stderr and "none.py" in ended.stderr and "Traceback" not in ended.stderr
+    assert (
+        ended.returncode != 0 and said in ended.stderr and "none.py" in ended.stderr and "Traceback" not in ended.stderr
+    )
 
 
 def test_readers_that_leave_do_not_end_the_run(place):

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import graindrive
 from graindrive import engines
 from graindrive.commands import headless
 from graindrive.scenes import scene
@@ -141,6 +142,14 @@ def test_a_run_leaves_its_outcome_with_the_case_s_number(extremes, tmp_path):
     trials = Run(tmp_path / "run").group("trials")
     assert trials["mu"][-1] == 10 and trials["found"][-1] == pytest.approx(-1.2, abs=5e-3)
     assert (tmp_path / "run" / "figure.png").exists()
+
+
+@pytest.mark.parametrize("loop", ["grain", "yade"])
+def test_a_case_runs_in_a_process_of_its_own(loop, tmp_path, monkeypatch):
+    """As by scripts/run: nothing but the study has imported YADE."""
+    monkeypatch.chdir(tmp_path)
+    made = graindrive.run("extremes", case="friction_2d", loop=loop, progress=False)
+    assert made.summary["outcome"] == "right" and made.summary["meaning"] == table.CASES["friction_2d"].meaning
 
 
 @pytest.mark.parametrize(

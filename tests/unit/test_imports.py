@@ -1,4 +1,7 @@
-"""No module of the package imports itself through others, neither at its top nor inside a function."""
+"""No module imports itself through others, at its top or inside a function; YADE is found by any import after the package's."""
+
+import subprocess
+import sys
 
 import pytest
 from import_graph import FOLDERS, circles, graph_of
@@ -15,3 +18,10 @@ def test_a_circle_is_found_at_the_top_and_inside_a_function(tmp_path, second):
     for name, text in {"__init__": "", "a": "from . import b, c\n", "b": second, "c": ""}.items():
         (tmp_path / f"{name}.py").write_text(text)
     assert circles(graph_of({"p": tmp_path})) == [["p.a", "p.b"]]
+
+
+@pytest.mark.parametrize("first", ["", "from graindrive import engines\n"])
+def test_yade_is_found_without_a_word_after_the_package_in_any_order(first):
+    code = f"import graindrive\n{first}from yade import O\nfrom graindrive import engines\nprint(O.iter, len(engines.classes()) > 10)"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stdout) == (0, "0 True\n"), ended.stderr
