@@ -118,9 +118,9 @@ class Run:
 
     `study` is the name of the study, `family` that of the study of which it is a preset. `parameters` and `provenance` are
     dicts of plain values, `constants` those of the study as numbers (empty in folders of older versions), `series` maps names
-    to 1D arrays of one length, `units` the names of series and parameters to their units, `meanings` those of parameters.
-    `summary` is the content of summary.json. A folder that is still being written shows its series and parameters, but no
-    frames.
+    to 1D arrays of one length, `units` the names of series and parameters to their units, `meanings` those of parameters,
+    `observables` maps what the study measures to its meaning (empty in older folders). `summary` is the content of
+    summary.json. A folder that is still being written shows its series and parameters, but no frames.
     """
 
     def __init__(self, path):
@@ -143,7 +143,11 @@ class Run:
         self.constants = {name: stored.value for name, stored in about.constants.items()}
         self.units.update({name: stored.unit for name, stored in about.parameters.items()})
         self.meanings = {name: stored.meaning for name, stored in about.parameters.items()}
+        self.observables = about.observables
         self.provenance = about.provenance
+
+    def __repr__(self):
+        return f"Run({str(self.path)!r}: {self.study}, {self.state})"
 
     @property
     def summary(self):
@@ -189,7 +193,7 @@ class Run:
         """Return what the run holds as a pandas DataFrame: where, name, value or size, unit, meaning; a row for each name.
 
         Parameters, quantities of the summary with their errors, series, and the arrays of all groups of run.h5, of the frames
-        those of the first; what `quantities` does not know, of a study of one's own, has no meaning here.
+        those of the first. The summary's meanings are those of the study's observables; other names of a study of one's own have none.
         """
         import pandas as pd  # a third of a second that no other reading needs
 
@@ -202,7 +206,8 @@ class Run:
             if not name.endswith("_err"):
                 error = values.get(f"{name}_err")
                 told = value if error is None else with_error(value, error)
-                rows.append(("summary", name, told, units.get(name, ""), quantities.meaning_of("summary", name)))
+                meaning = self.observables.get(name) or quantities.meaning_of("summary", name)
+                rows.append(("summary", name, told, units.get(name, ""), meaning))
         rows += [
             ("series", name, f"({len(column)},)", self.units.get(name, ""), quantities.meaning_of("series", name))
             for name, column in self.series.items()

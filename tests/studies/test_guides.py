@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from guide_pages import GUIDES, TOP, apply_changes, blocks, follow, write_files
@@ -54,6 +55,26 @@ def test_a_study_of_ones_own_and_its_campaign(tmp_path):
     assert json.loads((tmp_path / "first/summary.json").read_text())["energy_left_unit"] == "-"
     assert list(pd.read_csv(tmp_path / "oscillator/table.csv")["damping"]) == [0.05, 0.1, 0.2]
     assert (tmp_path / "oscillator/figures/oscillator-damping-energy_left.png").exists()
+
+
+def test_frames_for_other_programs(tmp_path):
+    pytest.importorskip("vtkmodules")
+    follow("look.md", tmp_path)
+    listed = (tmp_path / "look/vtk/grains.pvd").read_text()
+    frames = (tmp_path / "look/frames.xyz").read_text().count("Lattice=")
+    assert listed.count("<DataSet") == frames == 20 and (tmp_path / "look/frames.lammpstrj").exists()
+    assert (tmp_path / "look/vtk/contacts.pvd").exists() and (tmp_path / "look/vtk/intruder.pvd").exists()
+    compile((tmp_path / "picture.py").read_text(), "picture.py", "exec")
+
+
+def test_a_study_with_grains_on_both_loops(tmp_path):
+    """The same scene on the other loop gives the same drag within twice the errors of both."""
+    said = follow("grains.md", tmp_path)
+    near, reference = Run(tmp_path / "near").summary, Run(tmp_path / "reference").summary
+    assert "pair.py [key=value …]" in said and near["drag"] > 3 * near["drag_err"] > 0
+    assert abs(near["drag"] - reference["drag"]) < 2 * np.hypot(near["drag_err"], reference["drag_err"])
+    first = (tmp_path / "near/frames.xyz").read_text().splitlines()[1]
+    assert 'length_unit="d"' in first and 'time_unit="sqrt(d/g)"' in first
 
 
 @needs_snakemake

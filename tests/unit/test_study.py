@@ -88,14 +88,19 @@ def test_observables_take_units_and_meanings_from_the_table_of_names():
         observables(quantities.SI, "drag", "drag wind")
 
 
-def test_a_run_folder_holds_the_constants_and_family_of_its_study(tmp_path):
+def test_a_run_folder_holds_the_constants_observables_and_family_of_its_study(tmp_path):
     constants = {"d": Constant(0.02, "m", "diameter of the grains")}
-    kept = dict(constants=constants, family="s", units={"speed": "m/s"})
+    drag = Observable("drag", "m/s", "what drags here")  # the table of names gives it another meaning
+    kept = dict(constants=constants, family="s", observables=(SPEED, drag))
     with RunFolder(Parameters(out=str(tmp_path / "a")), study="deep", **kept) as folder:
-        folder.summarize(speed=3.0)
+        folder.summarize(speed=3.0, drag=2.0)
     run = Run(tmp_path / "a")
     assert (run.study, run.family, run.constants) == ("deep", "s", {"d": 0.02})
     assert run.summary["speed"] == 3 and run.summary["speed_unit"] == "m/s"
+    rows = run.contents().set_index(["where", "name"])
+    assert rows.loc["summary", "speed"]["meaning"] == "how fast"
+    assert tuple(rows.loc["summary", "drag"][["unit", "meaning"]]) == ("m/s", "what drags here")
+    assert repr(run) == f"Run({str(tmp_path / 'a')!r}: deep, complete)"
 
 
 @pytest.mark.parametrize("text", ["x = 1\n", "STUDY = 'magnus'\n"])

@@ -97,8 +97,7 @@ def films():
 
 def made(study, p):
     """Run the `Study` in its run folder, with stop signals handled."""
-    units = {observable.name: observable.unit for observable in study.observables}
-    kept = dict(figure=study.figure, constants=study.constants, units=units, family=study.family)
+    kept = dict(figure=study.figure, constants=study.constants, observables=study.observables, family=study.family)
     if p.choice:
         print(f"{study.name}: accuracy={p.accuracy}: {p.choice.words}", file=sys.stderr)
     for key, condition in p.given_in_vain.items():

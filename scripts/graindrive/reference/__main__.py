@@ -6,7 +6,11 @@ from pathlib import Path
 
 from ..base.errors import UsageError
 
-PACKAGES = {"sphinx": "python3-sphinx", "myst_parser": "python3-myst-parser"}  # module -> Debian package
+PACKAGES = {
+    "sphinx": "python3-sphinx",
+    "myst_parser": "python3-myst-parser",
+    "pandas": "python3-pandas",
+}  # module -> Debian package
 
 
 def missing():

@@ -26,13 +26,14 @@ class Described(NamedTuple):
 class About(NamedTuple):
     """Description of a run: attributes of the file (state, study, family, digest, …), parameters, constants, provenance.
 
-    Parameters and constants are {name: Described}, provenance {name: plain value}.
+    Parameters and constants are {name: Described}, provenance {name: plain value}, `observables` {name: what the study measures}.
     """
 
     attributes: dict
     parameters: dict
     constants: dict
     provenance: dict
+    observables: dict
 
 
 def opened(path, growing=False):
@@ -53,15 +54,17 @@ def write_about(file, about):
         dataset = file.require_group("constants").create_dataset(name, data=value)
         dataset.attrs.update(unit=unit, meaning=meaning)
     file.require_group("provenance").attrs.update(about.provenance)
+    file.require_group("observables").attrs.update(about.observables)
 
 
 def read_about(file):
-    """Return the `About` in an open HDF5 file; KeyError if there is none. Files of older versions hold no constants."""
+    """Return the `About` in an open HDF5 file; KeyError if there is none. Older files hold no constants or observables."""
     return About(
         {name: plain(value) for name, value in file.attrs.items()},
         {name: described(dataset) for name, dataset in file["parameters"].items()},
         {name: described(dataset) for name, dataset in file.get("constants", {}).items()},
         {name: plain(value) for name, value in file["provenance"].attrs.items()},
+        {name: plain(value) for name, value in (file["observables"].attrs.items() if "observables" in file else ())},
     )
 
 

@@ -35,13 +35,13 @@ class RunFolder:
     writes `run.h5` and `summary.json`, calls `figure(path)`, writes the exports and renames the folder to `out`. A UsageError
     removes the folder; after a signal the data are kept as `NAME.interrupted`, after any other failure as `NAME.failed`.
     Entering raises UsageError if `out` cannot be used, AlreadyComplete if the same run exists. `study` is the study's name,
-    `family` the name of the study of which it is a preset, `constants` its {name: Constant}, `units` the units of summarized
-    quantities that `postproc.quantities` does not know, {quantity: unit}.
+    `family` the name of the study of which it is a preset, `constants` its {name: Constant}, `observables` its `Observable`s,
+    whose units and meanings the run folder keeps.
     """
 
-    def __init__(self, parameters, *, study, figure=None, constants=None, units=None, family=None):
+    def __init__(self, parameters, *, study, figure=None, constants=None, observables=(), family=None):
         self.parameters, self.study, self.figure = parameters, study, figure
-        self.constants, self.own_units, self.family = constants or {}, units or {}, family or study
+        self.constants, self.observables, self.family = constants or {}, observables, family or study
         self.out = run_place.place_of(parameters.out)
         self.path = run_place.hidden(self.out, "part")
         self.provenance, self.summary, self.units = provenance(parameters, study), {}, {}
@@ -215,7 +215,8 @@ class RunFolder:
         """Finish all files and rename the folder to `out`; nothing can be lost once `run.h5` is complete."""
         self.note_cost()
         facts = {key: self.provenance.get(key, math.nan) for key in CONTRACT}
-        own = {**self.own_units, **{name: unit for name, unit in self.units.items() if unit is not None}}
+        own = {observable.name: observable.unit for observable in self.observables}
+        own = {**own, **{name: unit for name, unit in self.units.items() if unit is not None}}
         told = quantities.with_units("summary", {**plain(facts), **self.summary}, self.parameters.unit_system, own)
         summary_file.write(self.path, told)
         if lacking := without_value(self.summary):
@@ -262,7 +263,9 @@ class RunFolder:
         if self.resumed:
             attributes[checkpoint.SOURCE] = self.resumed["remains"].name
         constants = {name: run_file.Described(c.value, c.unit, c.meaning) for name, c in self.constants.items()}
-        run_file.write_about(file, run_file.About(attributes, self.parameters_described(), constants, self.provenance))
+        meanings = {observable.name: observable.meaning for observable in self.observables}
+        described = self.parameters_described()
+        run_file.write_about(file, run_file.About(attributes, described, constants, self.provenance, meanings))
 
     def parameters_described(self):
         """Return {key: Described} of the parameters, with the derived values in place of `auto`."""
