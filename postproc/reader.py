@@ -193,7 +193,7 @@ class Run:
         """Return what the run holds as a pandas DataFrame: where, name, value or size, unit, meaning; a row for each name.
 
         Parameters, quantities of the summary with their errors, series, and the arrays of all groups of run.h5, of the frames
-        those of the first. The summary's meanings are those of the study's observables; other names of a study of one's own have none.
+        those of the first. Meanings are those of the study's observables, else those of `quantities`; other names have none.
         """
         import pandas as pd  # a third of a second that no other reading needs
 

@@ -49,7 +49,7 @@ from graindrive.commands import headless  # noqa: E402
 from graindrive.runs import recording  # noqa: E402
 from graindrive.scenes import scene, space  # noqa: E402
 from graindrive.beds import sphere_bed  # noqa: E402
-from graindrive.base.errors import UsageError, one_line  # noqa: E402
+from graindrive.base.errors import UsageError  # noqa: E402
 from graindrive.scenes.material import HertzRestitutionSpheres  # noqa: E402
 from graindrive.parameters import Lever, StudyParameters, When, quantity  # noqa: E402
 from graindrive.postproc import quantities  # noqa: E402
@@ -218,11 +218,7 @@ def body_of(p):
 def check_room(p, body):
     """Raise UsageError if the body does not fit into the box, or comes too near to lid, surface, base or itself."""
     low, high = body.low / D, body.high / D
-    size = max(high[0] - low[0], high[2] - low[2])
-    if size < 1:
-        raise UsageError(
-            f"shape={one_line(p.shape)} is {size:.3g} d long, less than a grain; its lengths are in grain diameters, {D:g} m each"
-        )
+    intruder.require_length(p.shape, max(high[0] - low[0], high[2] - low[2]))
     least = LEAST_PERIOD * (1 + p.polydispersity)
     for key in ("width", "breadth"):
         if getattr(p, key) < least:

@@ -15,10 +15,11 @@ from .what_was_run import number, settings, table_of
 MOST_LABELS = 12  # curves of a panel that a legend can name
 PANEL = (2.2, 2.2)  # width and height of a panel's axes [inches]
 LEGEND_WIDTH = 1.4  # [inches]
+BREADTH = 0.5  # of the step from word to word, over which the curves stand side by side
 LOGARITHMIC_FROM = 30  # ratio of the largest to the smallest value from which a key's axis is logarithmic
 HOW = (
-    "Values are means over seeds; an error is the standard error by the scatter of the seeds where there are two or more, "
-    "else the run's own."
+    "Values are means over seeds. Their error is the standard error by the scatter of the seeds, or that by the runs' own "
+    "errors if it is larger: two or three seeds may lie together by chance."
 )
 
 
@@ -120,15 +121,17 @@ def values_of(rows, name):
 def over_seeds(rows, name):
     """Return a quantity of runs that differ in their seeds alone, as `Measured`.
 
-    The error is the scatter's, s/sqrt(n), from two runs on; a single run has its own.
+    The error is the larger of the scatter's, s/sqrt(n), and that of the runs' own errors, sqrt(sum of e^2)/n; the scatter of a
+    few seeds may be small by chance. A single run has its own error.
     """
     found = values_of(rows, name)
     if len(found) == 1:
         return found[0]
-    values = np.array([m.value for m in found])
+    values, errors = np.array([(m.value, m.error) for m in found]).reshape(-1, 2).T
     if not len(values):
         return Measured(float("nan"), float("nan"))
-    return Measured(float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))))
+    by_scatter, by_runs = values.std(ddof=1) / np.sqrt(len(values)), np.sqrt(np.sum(errors**2)) / len(values)
+    return Measured(float(values.mean()), float(np.fmax(by_scatter, by_runs)))  # errors may be unknown, nan
 
 
 # ---- a figure --------------------------------------------------------------------------------------------------------
@@ -146,19 +149,31 @@ def drawn(rows, keys, units, observable):
         places = places_of(axes, rows[key])
         for k, (setting, group) in enumerate(found):
             label = ", ".join(f"{other} {number(v)}" for other, v in zip((o for o in keys if o != key), setting))
-            draw_curve(axes, group, key, observable.name, places, k, label)
+            look = dict(color=COLOURS[k % 6], marker=MARKERS[(k + k // 6) % 6], label=label)
+            if are_words(
+                rows[key]
+            ):  # between words there is nothing to follow a line to; curves stand beside each other
+                beside = BREADTH * (k - (len(found) - 1) / 2) / len(found)
+                draw_curve(axes, group, key, observable.name, lambda v: places(v) + beside, linestyle="none", **look)
+            else:
+                draw_curve(axes, group, key, observable.name, places, **look)
         axes.set(xlabel=with_unit(key, units.get(key)), ylabel=with_unit(observable.name, observable.unit))
-        if 1 < len(found) <= MOST_LABELS:  # beside the axes, where no data are
+        if 1 < len(found) <= MOST_LABELS and axes.containers:  # beside the axes, where no data are
             axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0, frameon=False)
     return figure
 
 
-def draw_curve(axes, rows, key, name, places, k, label):
-    """Draw a quantity against a key, its k-th curve; settings without a value are left out."""
+def draw_curve(axes, rows, key, name, places, **look):
+    """Draw a quantity against a key at `places(value)`; settings without a value, and curves without any, are left out."""
     points = [(places(value), over_seeds(group, name)) for (value,), group in groups(rows, [key])]
     points = sorted((point for point in points if np.isfinite(point[1].value)), key=lambda point: point[0])
-    look = dict(color=COLOURS[k % 6], marker=MARKERS[(k + k // 6) % 6], label=label)
-    draw_points(axes, [x for x, _ in points], [measured for _, measured in points], **look)
+    if points:
+        draw_points(axes, [x for x, _ in points], [measured for _, measured in points], **look)
+
+
+def are_words(column):
+    """True if one of a key's values is a word or a switch."""
+    return not all(isinstance(value, Real) and not isinstance(value, (bool, np.bool_)) for value in column)
 
 
 def places_of(axes, column):
@@ -168,7 +183,7 @@ def places_of(axes, column):
     word or a switch, all stand side by side in the order of their names.
     """
     values = list(dict.fromkeys(column))
-    if all(isinstance(value, Real) and not isinstance(value, (bool, np.bool_)) for value in values):
+    if not are_words(values):
         if min(values) > 0 and max(values) >= LOGARITHMIC_FROM * min(values):
             axes.set_xscale("log")
         return float

@@ -230,7 +230,7 @@ def test_a_disk_that_is_full_ends_in_a_message_and_exit_code_1(place):
 @pytest.mark.parametrize(
     "text, said",
     [
-        ("print('hello')\n", "defines no STUDY, so it is not a study"),
+        ("print('hello')\n", "defines no STUDY; a YADE script is run by"),
         ("STUDY = 1\n", "defines STUDY, but does not run it: end the file with `if __name__"),
         ("STUDY = (\n", "SyntaxError"),
     ],

@@ -60,6 +60,23 @@ def test_errors_are_the_scatter_of_seeds_or_a_single_runs_own(campaign):
     assert (folder / "table.csv").exists() and "claims" not in report
 
 
+def test_seeds_that_lie_together_by_chance_have_the_runs_own_error(campaign):
+    near = [(dict(v0=1.0, seed=k), measured(10.0 + 0.01 * k, error=3.0)) for k in (1, 2)]
+    unknown = [(dict(v0=2.0, seed=k), measured(10.0 + 4.0 * k, error=float("nan"))) for k in (1, 2)]
+    report = write_report(campaign({"speed": near + unknown}), None, [DRAG]).read_text()
+    # 3/sqrt(2) is larger than the half difference 0.005; where the runs' errors are unknown the scatter counts alone.
+    assert lines(report)[2:] == [["1", "2", "10.0 ± 2.1"], ["2", "2", "16.0 ± 2.0"]]
+
+
+def test_curves_between_words_have_no_lines_and_stand_side_by_side(campaign):
+    runs = [(dict(shape=s, v0=v), measured(1.0)) for s in ("disk", "square") for v in (1.0, 2.0)]
+    figure = figure_of(campaign({"a": runs}))
+    (panel,) = [axes for axes in figure.axes if axes.get_xlabel() == "shape"]
+    first, second = (bars.lines[0] for bars in panel.containers)  # `lines` are the points, the caps, the bars
+    assert first.get_linestyle() == second.get_linestyle() == "None"
+    assert np.allclose(np.asarray(first.get_xdata(), float), [-0.125, 0.875]) and np.allclose(np.asarray(second.get_xdata(), float), [0.125, 1.125])
+
+
 def test_every_observable_is_drawn_against_every_key_of_each_sweep(campaign):
     grid = [dict(v0=v, mu=mu) for v in (0.5, 1.0) for mu in (0.1, 0.5)]
     both = [(keys, {**measured(1.0), **measured(2.0, name="lift")}) for keys in grid]

@@ -59,7 +59,8 @@ def asked_of(study, text, key="accuracy"):
             f"{key}={text} must be a share as 5% or 0.05, or that of an observable as drag:5%; {example(study, name, key)}"
         ) from None
     if not 0 < error < 1:
-        raise UsageError(f"{key}={text} must lie between 0 and 100 %; {example(study, name, key)}")
+        hint = f"write {key}={text.strip()}% for percents; " if 1 <= error < 100 and not match[3] else ""
+        raise UsageError(f"{key}={text} must lie between 0 and 100 %; {hint}{example(study, name, key)}")
     if match[1] and match[1] not in names:
         raise UsageError(
             f"{key}={text}: {study.name} measures no {match[1]}; it measures {', '.join(names)}; {example(study, name, key)}"
@@ -116,7 +117,11 @@ def chosen(study, text, made, given):
     levers = {key: getattr(paper, key) for key in study.levers if key not in given}
     why = "; ".join(dict.fromkeys(reasons)) or "nothing of this study was measured"
     told = sorted((key, value) for key, value in levers.items() if key not in usual.not_used())
-    return Choice(levers, f"no measured setting will do ({why}): the paper's settings, {in_words(told)}")
+    words = f"no measured setting will do ({why}): the paper's settings, {in_words(told)}"
+    if study.cost and any(getattr(usual, key) != value for key, value in levers.items()):
+        cost = study.cost.in_words(made(levers))
+        words += f"; that is {cost} of one core; leave accuracy out for the settings of scale={usual.scale}"
+    return Choice(levers, words)
 
 
 def is_open(study, made, book, setting, given):

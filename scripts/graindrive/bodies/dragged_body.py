@@ -97,7 +97,9 @@ def sampled_from(path, d):
         points = grid(low, high, float(spacing))
         distance = np.asarray(told["distance"](points), float)
     except Exception as error:  # a user's function may raise any error
-        raise UsageError(f"shape={one_line(path)}: {one_line(error, 400)}") from None
+        raise UsageError(
+            f"shape={one_line(path)}: {one_line(error, 400)} (lengths are in grain diameters, distances > 0 outside)"
+        ) from None
     if not np.any(distance < 0):
         raise UsageError(
             f"shape={one_line(path)}: distance(points) is nowhere negative between low and high, so the body has no inside;"
@@ -126,12 +128,16 @@ def told_by(path):
     try:
         with open(file, encoding="utf-8") as text:
             exec(compile(text.read(intruder.LARGEST_FILE), file, "exec"), names)
+    except OSError as error:
+        raise UsageError(
+            f"shape={one_line(path)}: {error.strerror}; name a file that defines distance(points)"
+        ) from None
     except (Exception, SystemExit) as error:
         raise UsageError(f"shape={one_line(path)}: {type(error).__name__}: {one_line(error, 400)}") from None
     missing = [name for name in ("distance", "low", "high") if name not in names]
     if missing:
         raise UsageError(
-            f"shape={one_line(path)}: the file must define distance(points), low and high; it lacks {missing[0]}"
+            f"shape={one_line(path)}: the file must define distance(points), low and high; it lacks {' and '.join(missing)}"
         )
     if np.shape(names["low"]) != (3,) or np.shape(names["high"]) != (3,):
         raise UsageError(f"shape={one_line(path)}: low and high must be three numbers each [d]")

@@ -68,10 +68,21 @@ def exact_disk(diameter, density):
 def make(shape, *, bead_diameter, mass, orientation_deg=0, bead_spacing=1):
     """Return the `Intruder` of that shape, turned counter-clockwise about its centroid by `orientation_deg`.
 
-    `shape` is a name that `engines.outline_of` knows or a file of vertices; lengths in its unit, `bead_spacing` in bead
+    `shape` is a name that `engines.outline_of` knows or a file of vertices; lengths in d, `bead_spacing` in bead
     diameters. Raises UsageError for an invalid body.
     """
-    return beads_along(outline_of(shape, orientation_deg), shape, bead_diameter, bead_spacing, mass)
+    outline = outline_of(shape, orientation_deg)
+    require_length(shape, np.ptp(about_centroid(outline), axis=0).max())
+    return beads_along(outline, shape, bead_diameter, bead_spacing, mass)
+
+
+def require_length(shape, length):
+    """Raise UsageError for a shape whose `length` is below 1 d: its file may be in metres."""
+    if length < 1:
+        raise UsageError(
+            f"shape={one_line(shape)} is {length:.3g} d long, less than a grain; its lengths are in grain diameters, so divide"
+            " them by d"
+        )
 
 
 def of_size(shape, size, bead_diameter, density):
@@ -122,7 +133,8 @@ def check_bead_count(outline, shape, step):
     count = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T).sum() / step
     if not count <= MOST_BEADS:
         raise UsageError(
-            f"shape={one_line(shape)} needs {count:.3g} beads, more than {MOST_BEADS}; give larger beads or a wider spacing"
+            f"shape={one_line(shape)} needs {count:.3g} beads, more than {MOST_BEADS}; raise bead_diameter [d], or make"
+            " the outline smaller: its lengths are in grain diameters"
         )
 
 
@@ -176,17 +188,19 @@ def check_room(body, *, swing, width, height, depth, lid):
     """
     (left, bottom), (right, top) = body.outline.min(axis=0), body.outline.max(axis=0)
     needed = right - left + 2 * swing + 4
+    wrong = []
     if needed > width:
-        raise UsageError(
-            f"width={width:g} d is too small for the body and its motion, which need {needed:g} d;"
-            " raise width or lower amplitude"
+        wrong.append(
+            f"width={width:g} d is too small for the body and its motion, which need {needed:g} d; raise width or lower amplitude"
         )
     if height - depth + bottom < 1:
-        raise UsageError(
+        wrong.append(
             f"height={height:g} d and depth={depth:g} d put the body into the base; raise height or lower depth"
         )
     if depth < top + lid:
         free = f"bed below its lid of {lid:g} d" if lid else "bed"
-        raise UsageError(
+        wrong.append(
             f"depth={depth:g} d lets the body protrude from the {free} by {top + lid - depth:g} d; raise depth"
         )
+    if wrong:
+        raise UsageError("; and ".join(wrong))

@@ -44,7 +44,8 @@ def opened(folder, plan):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise UsageError(
-                f"another scripts/campaign is working in {folder}; wait for it, or give another --out"
+                f"another scripts/campaign is working in {folder}, or one that was killed has left runs at work there;"
+                " wait until they have ended, or give another --out"
             ) from None
         plan_json.write(folder, plan, PROGRAM)
         yield lock

@@ -13,10 +13,9 @@ def main():
 
     if not headless.was_called:
         space = sys.modules["__main__"].__dict__
-        missing = (
-            'defines STUDY, but does not run it: end the file with `if __name__ == "__main__": headless.main(STUDY)`'
-            if "STUDY" in space
-            else 'defines no STUDY, so it is not a study; a plain YADE script runs with `yade -n -x` after `eval "$(scripts/env)"`'
-        )
-        print(f"{file} {missing}; see studies/guides/study.md", file=sys.stderr)
+        if "STUDY" in space:
+            missing = 'defines STUDY, but does not run it: end the file with `if __name__ == "__main__": headless.main(STUDY)`'
+        else:
+            missing = 'defines no STUDY; a YADE script is run by `yade -n -x` after `eval "$(scripts/env)"`, a study is made as'
+        print(f"{file} {missing}, see studies/guides/study.md", file=sys.stderr)
         sys.exit(2)
