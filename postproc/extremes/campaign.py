@@ -48,7 +48,7 @@ def draw_outcomes(_campaign, rows):
     groups = [group for _, group in ordered(rows).groupby(["loop", "precision"], sort=False)]
     longest = max(len(group) for group in groups)
     figure, panels = plt.subplots(
-        1, len(groups), figsize=(3.4 * len(groups), 0.115 * longest + 1.0), layout="constrained", squeeze=False
+        1, len(groups), figsize=(3.8 * len(groups), 0.115 * longest + 1.0), layout="constrained", squeeze=False
     )
     for axes, group in zip(panels[0], groups):
         part = np.maximum(group["error_over_bound"].astype(float), LEAST)
@@ -59,7 +59,7 @@ def draw_outcomes(_campaign, rows):
         axes.set_title(f"loop={first['loop']}, {first['precision']}", fontsize=7)
         axes.set_yticks(range(len(group)), group["meaning"], fontsize=4.5)
         axes.set(xscale="log", xlim=(LEAST / 2, 10), ylim=(longest - 0.5, -0.5))
-        axes.set_xlabel("|measured − expected| / bound", fontsize=7)
+        axes.set_xlabel("error / bound", fontsize=7)
     handles = [plt.Line2D([], [], marker="o", linestyle="", markersize=3, color=c, label=w) for w, c in COLOURS.items()]
     panels[0][-1].legend(handles=handles, loc="lower left", fontsize=6)
     return figure
@@ -134,9 +134,7 @@ def draw_friction(campaign, rows):
         if row["precision"] == "double" and row["loop"] == "grain":
             left.plot(trials["mu"], trials["expected"], "_", color=BLACK, markersize=7)
     left.set_xscale("symlog", linthresh=0.01)
-    left.set(
-        xlabel="friction coefficient μ", ylabel="sliding velocity after / normal velocity before", ylim=(-1.4, 1.4)
-    )
+    left.set(xlabel="friction coefficient μ", ylabel="$v_t$ after / $v_n$ before", ylim=(-1.4, 1.4))
     left.legend(fontsize=5)
     for k, (row, trials) in enumerate(runs_of(campaign, rows, "drum_")):
         if "viscosity" in trials:
@@ -191,7 +189,8 @@ REPORT = Report(
             "friction",
             SWEEP,
             "Friction from 0 to 10, viscosity from 1e2 to 1e6",
-            "Left: two grains whose surfaces meet at 1.2 of the normal velocity; bars: v_t − 2μ(m/m_t)v_n, or −v_t if they stick."
+            "Left: two grains whose surfaces meet at v_t = 1.2 v_n, by the velocity v_t with which they part; bars: the closed"
+            " form, v_t − 2μ(m/m_t)v_n, or −v_t if they stick."
             " Right: the drum's continuum, all bed (off rigid rotation), all gas (off its spin-up), half full (area of the bed).",
             no_claims,
             draw_friction,

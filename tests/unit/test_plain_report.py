@@ -74,7 +74,9 @@ def test_curves_between_words_have_no_lines_and_stand_side_by_side(campaign):
     (panel,) = [axes for axes in figure.axes if axes.get_xlabel() == "shape"]
     first, second = (bars.lines[0] for bars in panel.containers)  # `lines` are the points, the caps, the bars
     assert first.get_linestyle() == second.get_linestyle() == "None"
-    assert np.allclose(np.asarray(first.get_xdata(), float), [-0.125, 0.875]) and np.allclose(np.asarray(second.get_xdata(), float), [0.125, 1.125])
+    assert np.allclose(np.asarray(first.get_xdata(), float), [-0.125, 0.875]) and np.allclose(
+        np.asarray(second.get_xdata(), float), [0.125, 1.125]
+    )
 
 
 def test_every_observable_is_drawn_against_every_key_of_each_sweep(campaign):

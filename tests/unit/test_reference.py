@@ -72,6 +72,9 @@ def test_the_page_of_engines_has_a_row_for_every_attribute_of_every_class():
 
 def test_marks_in_a_docstring_stay_as_they_are_but_for_code():
     assert docstrings.escaped("F_n = *k* |d| `p_1`, Law2_") == r"F\_n = \*k\* \|d\| ``p_1``\ , Law2\_"
+    assert (
+        docstrings.escaped("every `syncEvery`\nsteps") == "every ``syncEvery``\nsteps"
+    )  # "\\ " takes a blank or line break away
 
 
 def test_a_formula_keeps_its_lines_and_a_sentence_does_not():

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from ..accuracy import choice
 from ..accuracy.told import measured_trade
+from ..accuracy.words import shown
 from ..base.columns import aligned
 from ..base.errors import UsageError, one_line
 from ..parameters import allowed, as_typed, choices, digest, plain_type
@@ -209,17 +210,12 @@ def levers_in_words(study):
     rows = [
         (
             f"  {key}",
-            f"{shown_number(lever.reference)} {unit(key)}".removesuffix(" -"),
+            f"{shown(lever.reference)} {unit(key)}".removesuffix(" -"),
             lever.cheaper if isinstance(lever.cheaper, str) else ", ".join(lever.cheaper),
         )
         for key, lever in study.levers.items()
     ]
     return aligned([("levers", "most accurate", "costs less when"), *rows]) if rows else ""
-
-
-def shown_number(value):
-    """Return a number without superfluous digits, a word unchanged."""
-    return f"{value:g}" if isinstance(value, (int, float)) else value
 
 
 def observables_in_words(study):

@@ -37,9 +37,7 @@ CASES = {
     **in_both("spin", "spin ratio up to 1000", impacts.spin),
     **in_both("angular_momentum", "angular momentum of a deep slipping contact", impacts.angular_momentum),
     **in_both("speed", "drive speed up to the overlap limit", impacts.speed_limit, loops=GRAIN),
-    **in_both(
-        "passing", "drive speed at which grains pass through each other without an error", impacts.passing, loops=GRAIN
-    ),
+    **in_both("passing", "drive speed at which grains pass through each other", impacts.passing, loops=GRAIN),
     **in_both("radius_ratio", "radius ratio 1:50", impacts.radius_ratio),
     **in_both("mass_ratio", "mass ratio 1e6", impacts.mass_ratio),
     "ring_2d": Case("sixty small disks hit a large one at once", impacts.ring),

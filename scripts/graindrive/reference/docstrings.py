@@ -25,8 +25,10 @@ def escaped(text):
     """Return a text in which nothing is markup but code between backticks."""
     parts, end = [], 0
     for code in CODE.finditer(text):
-        parts += [SPECIAL.sub(r"\\\1", text[end : code.start()]), f"``{' '.join(code[2].split())}``\\ "]
+        parts += [SPECIAL.sub(r"\\\1", text[end : code.start()]), f"``{' '.join(code[2].split())}``"]
         end = code.end()
+        if not text[end : end + 1].isspace():  # an escaped blank ends the code; before a blank it would take that away
+            parts.append("\\ ")
     return "".join([*parts, SPECIAL.sub(r"\\\1", text[end:])])
 
 
