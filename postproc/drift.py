@@ -16,7 +16,8 @@ class Drift:
     """Mean velocity with standard error over whole cycles, and the cycle means it rests on.
 
     The cycles lie between the times `start`, when the first one begins, and `end`, when the last one ends; `cycle_t`,
-    `cycle_y` (cycles,) are the middles and mean positions of all cycles of the run.
+    `cycle_y` (cycles,) are the middles and mean positions of all cycles of the run. `resolved` is False where the increments are
+    too few, or correlated over the whole run: the error is then likely too small (`statistics.Mean`).
     """
 
     rate: float
@@ -25,6 +26,7 @@ class Drift:
     end: float
     cycle_t: np.ndarray
     cycle_y: np.ndarray
+    resolved: bool
 
 
 def drift(t, y, period, *, skip=SKIPPED, rest=REST):
@@ -39,10 +41,10 @@ def drift(t, y, period, *, skip=SKIPPED, rest=REST):
     first = int(np.searchsorted(cycle_t, t[0] + skip * (t[-1] - t[0]))) if len(t) else 0
     last = end_of_motion(cycle_y, first, rest)
     if last - first < 2:
-        return Drift(float("nan"), float("nan"), float("nan"), float("nan"), cycle_t, cycle_y)
+        return Drift(float("nan"), float("nan"), float("nan"), float("nan"), cycle_t, cycle_y, False)
     steps = block_mean(np.diff(cycle_y[first:last]) / period)
     start, end = (float(t[0] + period * cycles) for cycles in (first, last))
-    return Drift(steps.value, steps.error, start, end, cycle_t, cycle_y)
+    return Drift(steps.value, steps.error, start, end, cycle_t, cycle_y, steps.resolved)
 
 
 def cycle_means(t, y, period):

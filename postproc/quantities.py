@@ -121,6 +121,7 @@ QUANTITIES = {
             contacts_std="standard deviation of the number of contacts in time",
             model_symmetric="L/D by Eq. 9 of the model",
             model_kappa="L/D by Eq. 15 of the model with the measured kappa",
+            rise_resolved="1 if the run is long enough for the error of rise_rate, 0 if that error is likely too small",
             steady="1 if the averages' window was found steady, else 0",
         ),
         **of(

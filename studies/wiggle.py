@@ -271,6 +271,9 @@ def keep_rates(p, folder, t, y):
     amplitude_unit = "d" if p.drive == "displacement" else "sqrt(g d)"
     folder.summarize(shape=p.shape, amplitude=(p.amplitude, amplitude_unit), period=p.period)
     folder.summarize(rise_rate=rise.rate, rise_rate_err=rise.error, rise_until=rise.end, y_final=y[-1] - y[0])
+    folder.summarize(rise_resolved=int(rise.resolved))
+    if not rise.resolved:
+        print("the run is too short for the error of rise_rate, which is likely too small; raise time", file=sys.stderr)
     phases, rates, errors = phase_rates(t, y, p.period, rise.start, rise.end, PHASES)
     folder.write("phase", dict(phase=phases, vy=rates, vy_err=errors))
 

@@ -57,6 +57,13 @@ def test_drift_lies_within_its_error_for_a_random_ratchet():
     assert inside >= 32, "95 % of 40 are 38; fewer than 32 happen once in 10^5"
 
 
+@pytest.mark.parametrize("cycles, resolved", [(8, False), (200, True)])
+def test_drift_says_whether_its_error_is_resolved(cycles, resolved):
+    """Independent steps of cycles: their error needs sixteen of them."""
+    y = np.repeat(np.cumsum(np.random.default_rng(5).normal(size=cycles)), 40)
+    assert drift(np.arange(len(y)) * 0.1, y, 4.0).resolved == resolved
+
+
 def test_drift_ends_where_the_body_rests():
     t = np.linspace(0, 400, 4001)
     found = drift(t, np.minimum(0.1 * t, 20.0), 4.0)
