@@ -56,7 +56,7 @@ TEST(SampledRecipe, RefusesWhatIsNoDistanceSayingItsSlope)
 	EXPECT_TRUE(mentions(squared, "near the surface, got half of them between ")) << squared;
 	EXPECT_TRUE(mentions(refusal([](const Vec<3>& at) { return norm(at) < 1 ? -NAN : 1.0; }), "finite"));
 	const std::string reaching = refusal([](const Vec<3>& at) { return at[2]; });
-	EXPECT_TRUE(mentions(reaching, "must lie inside its grid, got -2")) << reaching;
+	EXPECT_TRUE(mentions(reaching, "with distances > 0 at all outer nodes, got the least of them -2")) << reaching;
 }
 
 }  // namespace

@@ -11,16 +11,18 @@ FOLDERS = "/usr/lib/*/yade-double/py"
 
 
 class YadeFinder:
-    """Looks for the module `yade` where Python's own search has not found it; the program `yade` has it on its path."""
+    """Looks for the module `yade` on Python's path, then in Debian's folder, and prepares its import."""
 
     def find_spec(self, name, _path=None, _target=None):
-        """Return the spec of `yade` from Debian's folder, None for other modules or without YADE."""
-        spec = PathFinder.find_spec(name, glob.glob(FOLDERS)) if name == "yade" else None
+        """Return the spec of `yade`, None for other modules or without YADE."""
+        spec = PathFinder.find_spec(name, [*sys.path, *glob.glob(FOLDERS)]) if name == "yade" else None
         if spec is None:
             return None
         # As the `yade` program does: idle OpenMP threads that spin slow a busy machine.
         os.environ.setdefault("OMP_NUM_THREADS", "1")
-        sys.path.append(os.path.dirname(spec.submodule_search_locations[0]))  # for what YADE itself imports
+        folder = os.path.dirname(spec.submodule_search_locations[0])
+        if folder not in sys.path:
+            sys.path.append(folder)  # for what YADE itself imports
         spec.loader.exec_module = quietly(spec.loader.exec_module)
         return spec
 
@@ -36,6 +38,6 @@ def quietly(execute):
 
 
 def install():
-    """Let `import yade` look into Debian's folder from now on; a second call changes nothing."""
+    """Let this finder serve every `import yade` from now on; a second call changes nothing."""
     if not any(isinstance(finder, YadeFinder) for finder in sys.meta_path):
-        sys.meta_path.append(YadeFinder())
+        sys.meta_path.insert(0, YadeFinder())
