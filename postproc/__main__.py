@@ -3,6 +3,7 @@
 How a run is drawn its study says: one of this checkout, by the name in the run folder, or that of the file `study=FILE`.
 """
 
+import contextlib
 import sys
 from pathlib import Path
 
@@ -29,21 +30,35 @@ def main(arguments):
         frame, filmed = (whole(key, options.get(key, usual)) for key, usual in (("frame", -1), ("animation", 0)))
         formats = known_formats(options.get("export", ""))
         for path in paths:
-            if set(options) - {"study"} != {"export"}:
-                draw = figure_of(path, options.get("study"))
-                print(f"{path}: drawing figure.png and figure.pdf")
-                draw(path, frame)
-            if filmed:
-                film = film_of(path, options.get("study"))
-                print(f"{path}: filming animation.mp4")
-                film(path)
-            if formats:
-                print(f"{path}: writing {', '.join(exports.FILES[name] for name in formats)}")
-                exports.write(path, formats)
+            with said_of(path):
+                if set(options) - {"study"} != {"export"}:
+                    draw = figure_of(path, options.get("study"))
+                    print(f"{path}: drawing figure.png and figure.pdf")
+                    draw(path, frame)
+                if filmed:
+                    film = film_of(path, options.get("study"))
+                    print(f"{path}: filming animation.mp4")
+                    film(path)
+                if formats:
+                    print(f"{path}: writing {', '.join(exports.FILES[name] for name in formats)}")
+                    exports.write(path, formats)
         return 0
     except (ValueError, RunError, UsageError) as error:
         print(f"graindrive.postproc: error: {error}", file=sys.stderr)
     return 2
+
+
+@contextlib.contextmanager
+def said_of(path):
+    """Turn what a run folder lacks, and files that cannot be written, into a RunError that names the folder."""
+    try:
+        yield
+    except (LookupError, StopIteration) as error:
+        raise RunError(
+            f"{path}, {Run(path).state}, does not hold {error} which this needs; finish or repeat the run"
+        ) from None
+    except OSError as error:
+        raise RunError(f"{path}: {error.filename or ''} cannot be written ({error.strerror or error})") from None
 
 
 def sorted_out(arguments):
@@ -99,7 +114,12 @@ def study_of(path, file=None):
             f"{path} holds a run of {name}, which has no figure here; there are: {', '.join(known)}; give study=FILE"
         )
     try:
-        return loaded(file or known[name])
+        study = loaded(file or known[name])
+        if file and study.family != run.family:
+            raise UsageError(
+                f"{path} holds a run of {run.study}, but study={file} makes runs of {study.name}; leave study= out"
+            )
+        return study
     except OSError as error:
         raise UsageError(f"study={file} cannot be read ({error.strerror})") from None
     except ImportError as error:

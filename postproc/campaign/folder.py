@@ -14,7 +14,16 @@ from ..reader import Run, RunError
 from .runs import measurements
 
 FACTS = ("cpu", "code_version", "threads")  # of a run's provenance that the table holds
-NOT_IN_TABLE = ("out", "resume", "checkpoint_seconds", "redo", "vtk", "export")  # keys that say nothing of the result
+NOT_IN_TABLE = (
+    "out",
+    "resume",
+    "checkpoint_seconds",
+    "redo",
+    "vtk",
+    "export",
+    "film",
+    "unused",
+)  # keys that say nothing of the result
 
 
 @dataclass(frozen=True)
@@ -50,7 +59,7 @@ class Campaign:
     def as_measured(self):
         """The table with the errors that each run gave."""
         rows = [row for row in map(self.row, self.plan["runs"]) if row]
-        table = pd.DataFrame(rows, columns=None if rows else ["run", "sweeps"])
+        table = without_copies(pd.DataFrame(rows, columns=None if rows else ["run", "sweeps"]))
         return table.sort_values(self.varied(table) or ["run"], kind="stable", ignore_index=True, key=sortable)
 
     @cached_property
@@ -75,7 +84,7 @@ class Campaign:
             return None
         keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
         values, _ = summary_file.parted(run.summary)
-        measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items() if keys.get(k) != v}
+        measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items()}
         facts = {fact: run.provenance.get(fact) for fact in FACTS}
         return {"run": planned["name"], "sweeps": " ".join(planned["sweeps"]), **keys, **measured, **facts}
 
@@ -113,6 +122,17 @@ class Campaign:
     def sweep(self, name):
         """Return the rows of the table that belong to a sweep."""
         return self.table[[name in sweeps.split() for sweeps in self.table["sweeps"]]]
+
+
+def without_copies(table):
+    """Return a table without the columns NAME_measured that say in every run what the key NAME says."""
+    measured = {name: name.removesuffix("_measured") for name in table if name.endswith("_measured")}
+    copies = [
+        name
+        for name, key in measured.items()
+        if key in table and all(a == b or pd.isna(a) for a, b in zip(table[name], table[key]))
+    ]
+    return table.drop(columns=copies)
 
 
 def sortable(column):

@@ -65,10 +65,13 @@ def column_of(table, name):
 def sweep_parts(campaign, sweep, shown):
     """Return the paragraphs on one sweep: its table, and a figure of each observable that its runs have; draws the figures."""
     rows = campaign.sweep(sweep)
+    lacking = [f"`{observable.name}`" for observable in shown if not values_of(rows, observable.name)]
     shown = [observable for observable in shown if values_of(rows, observable.name)]
     keys = [key for key in campaign.varied(rows) if key != "seed"]
     units = campaign.units(rows["run"].iloc[0])
     parts = [f"### Sweep `{sweep}`", table_of_values(rows, keys, units, shown)]
+    if lacking and len(rows):
+        parts.append(f"No run of this sweep gives a number of {', '.join(lacking)}.")
     if not keys:
         return parts + ["No key but the seed varies, so there is nothing to draw against."]
     for observable in shown:

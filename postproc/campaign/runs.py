@@ -1,5 +1,7 @@
 """Rows of a campaign's table chosen by their keys, and their quantities over repeats, as numbers with errors."""
 
+from numbers import Real
+
 import numpy as np
 
 from ..measured import Measured, mean_of
@@ -18,8 +20,8 @@ def measurements(rows, name):
 
 
 def is_number(value):
-    """True for a finite number; a table holds None or NaN where a run has no value."""
-    return value is not None and bool(np.isfinite(float(value)))
+    """True for a finite number; a table holds None or NaN where a run has no value, and words."""
+    return isinstance(value, (Real, np.bool_)) and bool(np.isfinite(float(value)))
 
 
 def as_error(value):

@@ -9,6 +9,7 @@ import importlib.util
 import io
 import math
 import sys
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +19,7 @@ from .base.errors import UsageError
 from .parameters import StudyParameters
 from .postproc import quantities
 
+LOADING = threading.RLock()  # held while a study is loaded, which may load another
 NAME = "STUDY"  # name of the object in a study file
 NO_STUDIES = ("house",)  # files in the folder of the studies that are not studies
 
@@ -153,7 +155,12 @@ def loaded(path):
 
     The file is imported under a name other than `__main__`, and can import modules of its own folder.
     """
-    path = Path(path).resolve()
+    with LOADING:
+        return loaded_alone(Path(path).resolve())
+
+
+def loaded_alone(path):
+    """Load a study as `loaded` does; sys.path and sys.stdout are the whole process's, so one thread at a time may."""
     spec = importlib.util.spec_from_file_location(f"study_{path.stem}", path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # where pydantic looks up the types that a class of parameters names

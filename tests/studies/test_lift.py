@@ -329,6 +329,14 @@ def test_a_function_of_distance_from_a_file_is_a_body(lift, tmp_path):
     assert summary_of(tmp_path / "run")["drag"] > 0
 
 
+def test_a_function_that_changes_its_argument_describes_the_same_body(lift, tmp_path):
+    box = "low, high = (-0.9, -1.9, -1.4), (2.9, 1.9, 2.4)\n"
+    function = "def distance(p):\n    p -= (1.0, 0.0, 0.5)\n    return (p**2).sum(axis=1) ** 0.5 - 1.2\n"
+    (tmp_path / "off.py").write_text(box + function)
+    body = dragged_body.of_shape(str(tmp_path / "off.py"), 0, 0, 1.0)
+    assert np.allclose(body.low, (-0.2, -1.2, -0.7), atol=0.01) and np.allclose(body.high, (2.2, 1.2, 1.7), atol=0.01)
+
+
 def test_an_outline_is_swept_along_y_with_its_y_up(lift, tmp_path):
     """A right-angled wedge with a flat lower side; its highest corner is at the rear."""
     (tmp_path / "wedge.csv").write_text("0, 0\n3, 0\n0, 1.5\n")

@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import made_up_runs
+import numpy as np
 import pytest
 from made_up_runs import KEYS, write_run
 
@@ -17,7 +18,9 @@ from graindrive.postproc.campaign import results, what_was_run
 from graindrive.postproc.campaign.folder import Campaign
 from graindrive.postproc.campaign.report import write_report
 from graindrive.postproc.reader import RunError
+from graindrive.commands.parameter_values import argument
 from graindrive.runs.run_folder import RunFolder
+from graindrive.study import house, loaded
 
 TOY = Path(__file__).parents[1] / "faults" / "toy_study.py"
 GOOD = f"study: {TOY}\ncommon: {{scale: smoke, steps: 20}}\nsweeps:\n  a: {{seed: [1, 2]}}\n"
@@ -83,8 +86,16 @@ def test_names_of_many_long_values_stay_short_and_different(plan):
 
 def test_switches_and_empty_values_become_the_studys_words(plan):
     assert "vtk=1" in arguments(plan(GOOD.replace("steps: 20", "vtk: true")))[0]
-    with pytest.raises(UsageError, match="period=auto is not allowed"):
+    with pytest.raises(UsageError, match="period has no value; leave it out"):
         plan(GOOD.replace("steps: 20", "period:"))
+
+
+def test_values_of_numpy_and_paths_are_taken_as_those_of_python():
+    keys = loaded(house()["shear"]).parameters
+    given = dict(seed=np.int64(2), inertial_number=np.float32(0.5), redo=np.bool_(True), out=Path("a/b"))
+    assert [argument(keys, *pair) for pair in given.items()] == ["seed=2", "inertial_number=0.5", "redo=1", "out=a/b"]
+    with pytest.raises(UsageError, match="out has no value; leave it out for its default"):
+        argument(keys, "out", None)
 
 
 @pytest.mark.parametrize(

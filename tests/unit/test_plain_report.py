@@ -68,6 +68,21 @@ def test_seeds_that_lie_together_by_chance_have_the_runs_own_error(campaign):
     assert lines(report)[2:] == [["1", "2", "10.0 ± 2.1"], ["2", "2", "16.0 ± 2.0"]]
 
 
+def test_a_quantity_that_equals_the_key_of_its_name_in_some_runs_keeps_all_values(campaign):
+    runs = [(dict(v0=v), measured(round(v), name="v0")) for v in (1.0, 1.5, 2.0)]
+    report = write_report(
+        campaign({"a": runs}), None, [Observable("v0", "m/s", "as measured", headline=True)]
+    ).read_text()
+    assert [row[2] for row in lines(report)[2:]] == ["1.00 ± 0.50", "2.00 ± 0.50", "2.00 ± 0.50"]
+
+
+def test_words_and_quantities_without_a_number_are_named(campaign):
+    runs = [(dict(v0=v), {**measured(v), "lift": "word", "torque": None}) for v in (1.0, 2.0)]
+    shown = [DRAG, LIFT, Observable("torque", "N m", "about the centre")]
+    report = write_report(campaign({"a": runs}), None, shown).read_text()
+    assert "No run of this sweep gives a number of `lift`, `torque`." in report and "| v0 | runs | drag [N] |" in report
+
+
 def test_curves_between_words_have_no_lines_and_stand_side_by_side(campaign):
     runs = [(dict(shape=s, v0=v), measured(1.0)) for s in ("disk", "square") for v in (1.0, 2.0)]
     figure = figure_of(campaign({"a": runs}))

@@ -149,6 +149,19 @@ def test_command_mistakes_are_one_line_and_exit_2(run_folder, extra, words, caps
         assert not (run_folder / "figure.png").exists(), "nothing is drawn before all is read"
 
 
+def test_what_a_run_lacks_and_what_cannot_be_written_is_one_line(run_folder, monkeypatch, capsys):
+    def lacking(*_):
+        raise KeyError("steady_from")
+
+    monkeypatch.setattr(command, "figure_of", lambda *_: lacking)
+    assert command.main([str(run_folder)]) == 2
+    assert "does not hold 'steady_from' which this needs" in capsys.readouterr().err
+    (run_folder / "frames.xyz").mkdir()
+    assert command.main([str(run_folder), "export=xyz"]) == 2
+    err = capsys.readouterr().err
+    assert "cannot be written" in err and err.count("\n") == 1
+
+
 def test_command_without_a_folder_says_so(capsys):
     assert command.main(["export=xyz"]) == 2
     assert "no run folder is given" in capsys.readouterr().err

@@ -387,6 +387,30 @@ def test_a_damaged_finished_run_is_named_and_made_again_with_redo(place, file):
     assert place.names() == ["a", "a.damaged"] and place.rows() == WHOLE
 
 
+def test_damage_in_any_dataset_of_a_finished_run_is_found(place):
+    """The series are compressed, so that a changed byte does not pass for a number."""
+    place.run()
+    with h5py.File(place.path / "a" / "run.h5") as file:
+        names = []
+        file.visit(lambda name: names.append(name) if isinstance(file[name], h5py.Dataset) else None)
+        chunks = {name: file[name].id.get_chunk_info(0) for name in names if file[name].chunks}
+    name, chunk = max(chunks.items())  # not the first that is read
+    content = bytearray((place.path / "a" / "run.h5").read_bytes())
+    for k in range(chunk.byte_offset, chunk.byte_offset + chunk.size):
+        content[k] ^= 0x5A
+    (place.path / "a" / "run.h5").write_bytes(content)
+    assert name != min(names)
+    with pytest.raises(UsageError, match="holds a damaged run: .*run.h5 cannot be read"):
+        place.run()
+
+
+def test_a_run_of_another_study_with_the_same_keys_is_refused_by_name(place):
+    place.run()
+    other = RunFolder(Parameters(out=str(place.path / "a")), study="toy2", figure=draw)
+    with pytest.raises(UsageError, match="holds a run of the study toy; give another out= or move it away"):
+        other.__enter__()
+
+
 # ---- what is on the disk when a name appears -------------------------------------------------------------------------
 
 

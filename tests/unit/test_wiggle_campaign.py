@@ -302,4 +302,4 @@ def test_all_figures_are_drawn_and_the_report_names_them(tmp_path, figures_drawn
 def test_the_cost_of_the_papers_run_is_that_of_its_particle_steps():
     study = loaded(house()["wiggle"])
     assert study.cost.work(study.usual("paper")) == pytest.approx(63000 * 1e7, rel=0.02)
-    assert study.cost.core_seconds(study.usual("paper")) == pytest.approx(63000 * 1e7 / 90e6, rel=0.02)
+    assert study.cost.core_seconds(study.usual("paper")) == pytest.approx(63000 * 1e7 / 45e6, rel=0.02)

@@ -93,10 +93,10 @@ def sampled_from(path, d):
     told = told_by(path)
     try:
         low, high, spacing = (np.array(told[name], float) for name in ("low", "high", "spacing"))
-        made = surfaces.sampled(lambda points: told["distance"](points / d) * d, low * d, high * d, float(spacing) * d)
+        made = surfaces.sampled(lambda points: distances(told, points / d) * d, low * d, high * d, float(spacing) * d)
         points = grid(low, high, float(spacing))
-        distance = np.asarray(told["distance"](points), float)
-    except Exception as error:  # a user's function may raise any error
+        distance = distances(told, points)
+    except (Exception, SystemExit) as error:  # a user's function may raise any error
         raise UsageError(
             f"shape={one_line(path)}: {one_line(error, 400)} (lengths are in grain diameters, distances > 0 outside)"
         ) from None
@@ -108,6 +108,11 @@ def sampled_from(path, d):
     low, high = extent(points, distance, spacing)
     volume = np.clip(0.5 - distance / spacing, 0, 1).sum() * spacing**3
     return DraggedBody(made, low * d, high * d, float(volume * d**3), False, np.zeros((0, 2)))
+
+
+def distances(told, points):
+    """Return what a file's function says of points (n, 3), (n,); it gets a copy, which it may change."""
+    return np.asarray(told["distance"](points.copy()), float)
 
 
 def extent(points, distance, spacing):

@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import os
 import re
 
 from ..base.errors import UsageError, one_line
@@ -104,7 +105,13 @@ def argument(parameters, key, value):
     field = parameters.__fields__[key]
     if isinstance(value, (dict, list)):
         raise UsageError(f"{one_line(key)} must be a number, a word or a switch, got {shortened(value)}")
-    if value is None or (field.allow_none and value == "auto"):
+    if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:  # of NumPy, which help does not import
+        value = value.item()
+    elif isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if value is None and not field.allow_none:
+        raise UsageError(f"{key} has no value; leave it out for its default")
+    if field.allow_none and value in (None, "auto"):
         return f"{key}=auto"
     if not is_of_kind(plain_type(field), value):
         refuse(field, f"'{value}'" if isinstance(value, str) and is_number(value) else as_written(value))

@@ -100,8 +100,14 @@ def parameters_in(path):
 
 def read_through(path):
     """Read every dataset of the file `path`, since only this finds all damage; raises one of UNREADABLE."""
+
+    def read(_name, item):
+        """Read a dataset; return None, because any other value ends h5py's visit."""
+        if isinstance(item, h5py.Dataset):
+            item[()]
+
     with opened(path) as file:
-        file.visititems(lambda _, item: item[()] is None if isinstance(item, h5py.Dataset) else None)
+        file.visititems(read)
 
 
 # ---- frames and other groups -----------------------------------------------------------------------------------------

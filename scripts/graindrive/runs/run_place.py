@@ -81,6 +81,8 @@ def refuse_what_is_there(run):
         )
     if stored_digest(out) is None:
         raise UsageError(f"{given} holds something other than a complete run; give another out= or move it away")
+    if (study := stored_family(out)) not in (None, run.family):
+        raise UsageError(f"{given} holds a run of the study {study}; give another out= or move it away")
     if stored_digest(out) != run.parameters.digest():
         raise UsageError(f"{given} holds a run of other parameters{difference(run)}; give another out= or move it away")
     if not run.parameters.redo:
@@ -110,6 +112,11 @@ def stored_digest(path):
     except (OSError, ValueError):
         pass
     return None
+
+
+def stored_family(path):
+    """Return the family, the study or that of which it is a preset, of the run in the folder `path`; None in older folders."""
+    return run_file.attribute(path / run_file.NAME, "family")
 
 
 def damage(path):
