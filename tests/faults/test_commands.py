@@ -220,7 +220,7 @@ def test_a_run_installs_nothing_that_only_other_commands_need(asked_for):
         (["env"], {"yade", "python3-pandas"}),
         (["setup"], {"yade", "python3-pandas"}),
         (["setup", "film"], {"ffmpeg"}),
-        (["setup", "docs"], {"python3-sphinx", "python3-myst-parser"}),
+        (["setup", "docs"], {"python3-sphinx", "python3-myst-parser", "python3-pandas"}),
     ],
 )
 def test_a_command_adds_its_own_packages_to_those_of_a_run(asked_for, command, added):

@@ -163,7 +163,7 @@ def test_no_combination_of_values_escapes_the_one_line_answer(study):
         ("wiggle", ["lid_pressure=1e9"], "weighs 1e[+]09 rho d g, but grains can carry only"),
         ("wiggle", ["intruder_mass=1e9"], "lower intruder_mass"),
         ("wiggle", ["lid_pressure=1e-6"], "critical .* of a body of mass 1e-06; lower dt_factor"),
-        ("wiggle", ["bead_diameter=1e-5"], "give larger beads"),
+        ("wiggle", ["bead_diameter=1e-5"], "raise bead_diameter"),
         ("wiggle", ["amplitude=0", "period=1e-20"], "must be at least 40 time steps"),
         ("wiggle", ["orientation_deg=1e20"], "degrees"),
         ("magnus", ["field_spacing=1e-160"], "field_spacing=1e-160: the size"),

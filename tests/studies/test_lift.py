@@ -418,7 +418,7 @@ def test_a_file_that_describes_no_body_is_refused(lift, tmp_path, text, reason):
         (dict(lid_density=1e6), "lower lid_density"),
         (dict(dt_factor=20), "lower dt_factor"),
         (dict(shape="pyramid"), "shape must be cylinder"),
-        (dict(shape="missing.py"), "FileNotFoundError"),
+        (dict(shape="missing.py"), "No such file or directory; name a file that defines distance"),
         (dict(shape="missing.csv"), "shape=missing.csv"),
         (dict(field_spacing=0.3), "must divide 1 d"),
         (dict(width=1e6, breadth=1e4), "more than 5e"),

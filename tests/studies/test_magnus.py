@@ -215,7 +215,7 @@ def test_what_an_engine_says_is_one_line_without_a_traceback(capsys):
         (dict(field_spacing=0.001, fields=True), "raise it, or leave the fields out"),
         (dict(v0=1e-12, fields=True), "steps, more than"),
         (dict(dt_factor=1e-20, fields=True), "steps, more than"),
-        (dict(shape="square", bead_diameter=1e-6), "give larger beads"),
+        (dict(shape="square", bead_diameter=1e-6), "raise bead_diameter"),
         (dict(wall_pressure=1e12), "wall_pressure=1e.12 N/m makes grains overlap"),
     ],
 )

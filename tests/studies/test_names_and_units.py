@@ -35,6 +35,7 @@ NO_UNIT_OF_A_STUDY = (
     "parameters",
     "constants",
     "provenance",
+    "observables",
 )  # they carry units and meanings of their own, or are explained by their names
 
 
