@@ -84,7 +84,7 @@ class Campaign:
             return None
         keys = {key: value for key, value in run.parameters.items() if key not in NOT_IN_TABLE}
         values, _ = summary_file.parted(run.summary)
-        measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items()}
+        measured = {f"{k}_measured" if k in keys else k: v for k, v in values.items() if v is not None}
         facts = {fact: run.provenance.get(fact) for fact in FACTS}
         return {"run": planned["name"], "sweeps": " ".join(planned["sweeps"]), **keys, **measured, **facts}
 
