@@ -153,9 +153,7 @@ def drawn(rows, keys, units, observable):
         for k, (setting, group) in enumerate(found):
             label = ", ".join(f"{other} {number(v)}" for other, v in zip((o for o in keys if o != key), setting))
             look = dict(color=COLOURS[k % 6], marker=MARKERS[(k + k // 6) % 6], label=label)
-            if are_words(
-                rows[key]
-            ):  # between words there is nothing to follow a line to; curves stand beside each other
+            if are_words(rows[key]):  # nothing lies between words, so no line; curves stand side by side
                 beside = BREADTH * (k - (len(found) - 1) / 2) / len(found)
                 draw_curve(axes, group, key, observable.name, lambda v: places(v) + beside, linestyle="none", **look)
             else:
